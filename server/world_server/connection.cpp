@@ -23,7 +23,8 @@ Connection::Connection(asio::ip::tcp::socket socket, Simulation& simulation, std
     : socket_(std::move(socket)),
       simulation_(simulation),
       session_(simulation.connect(std::move(peer))),
-      closed_(std::move(closed)) {}
+      closed_(std::move(closed)),
+      pause_timer_(socket_.get_executor()) {}
 
 void Connection::start() {
   error_code ignored;  // a client that is gone already shows at the first read
@@ -48,14 +49,29 @@ std::size_t Connection::send(std::string_view text, error_code& error) {
   const auto write = [&](std::string_view piece) {
     return socket_.write_some(asio::buffer(piece.data(), piece.size()), error);
   };
+  const bool apart = !session_.extended && text.size() <= kMostPaused_bytes;
+  const double speed = simulation_.clock.speed();
   std::size_t sent = 0;
-  for (std::size_t lines = 0; !session_.extended && lines < kMostLinesApart; ++lines) {
+  for (std::size_t lines = 0; apart && lines < kMostLinesApart; ++lines) {
     const std::size_t end = text.find('\n', sent);
     if (end == std::string_view::npos) break;
     sent += write(text.substr(sent, end + 1 - sent));
-    if (sent != end + 1) return sent;
+    if (sent != end + 1 || sent == text.size()) return sent;
+    if (speed > 0 && speed <= 1 && !session_.close) {
+      pause();
+      return sent;
+    }
   }
-  return sent == text.size() ? sent : sent + write(text.substr(sent));
+  return sent + write(text.substr(sent));
+}
+
+void Connection::pause() {
+  pausing_ = true;
+  pause_timer_.expires_after(kPause);
+  pause_timer_.async_wait([self = shared_from_this()](error_code cancelled) {
+    self->pausing_ = false;
+    if (!cancelled) self->flush();
+  });
 }
 
 void Connection::take(std::string_view bytes) {
@@ -75,6 +91,7 @@ void Connection::take(std::string_view bytes) {
 void Connection::flush() {
   if (!open_) return;
   if (session_.out.empty()) return session_.close ? close() : void();
+  if (pausing_ && !session_.close && session_.out.size() <= kMostPaused_bytes) return;
   if (!waiting_) {
     error_code error;
     session_.out.erase(0, send(session_.out, error));
@@ -85,7 +102,7 @@ void Connection::flush() {
     return close();
   }
   if (session_.close) return close();
-  if (!session_.out.empty() && !waiting_) wait_until_writable();
+  if (!session_.out.empty() && !waiting_ && !pausing_) wait_until_writable();
 }
 
 void Connection::watch_peer() {
@@ -106,6 +123,9 @@ void Connection::close() {
   if (!open_) return;
   open_ = false;
   error_code ignored;
+  // A client that has sent its last request still reads the answers.
+  if (pausing_) socket_.write_some(asio::buffer(session_.out), ignored);
+  pause_timer_.cancel();
   socket_.close(ignored);
   simulation_.disconnect(session_);
   closed_(*this);

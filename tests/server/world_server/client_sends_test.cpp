@@ -15,7 +15,7 @@ namespace {
 
 class PacketClient {
  public:
-  PacketClient() {
+  explicit PacketClient(double speed = 0) : simulation(with_speed(speed)) {
     std::array<int, 2> ends{};
     REQUIRE(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) == 0);
     fd_ = ends[1];
@@ -53,10 +53,30 @@ class PacketClient {
     return all;
   }
   Session& session() { return *simulation.sessions.front(); }
+  void flush() { connection_->flush(); }
+  // What comes until the server has nothing more to send.
+  std::vector<std::string> rest() {
+    std::vector<std::string> all;
+    REQUIRE(support::eventually([&] {
+      io_.poll();
+      for (std::string& packet : packets()) all.push_back(std::move(packet));
+      return simulation.sessions.empty() || session().out.empty();
+    }));
+    return all;
+  }
+  void send_last(const std::string& text) {
+    REQUIRE(::send(fd_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size()));
+    ::shutdown(fd_, SHUT_WR);
+  }
 
-  Simulation simulation{fast()};
+  Simulation simulation;
 
  private:
+  static ServerOptions with_speed(double speed) {
+    ServerOptions options = fast();
+    options.speed = speed;
+    return options;
+  }
   boost::asio::io_context io_{1};
   std::shared_ptr<Connection> connection_;
   int fd_ = -1;
@@ -87,8 +107,49 @@ TEST_CASE("A client without a Session gets each line by itself") {
   CHECK(packets.back().starts_with("STA"));
 }
 
+TEST_CASE("In real time a line waits until the client has had time to read the one before") {
+  PacketClient client(1);
+  client.packets();
+  client.send("INIT {ClassName USARBot.P2DX} {Name R1}\r\n", [&] { return client.session().robot.has_value(); });
+  client.report();
+  CHECK(client.packets().size() == 1);
+  client.flush();
+  CHECK(client.packets().empty());
+  const std::vector<std::string> packets = client.rest();
+  CHECK(packets.size() >= 7);
+  for (const std::string& packet : packets) CHECK(is_one_line(packet));
+  CHECK(packets.back().starts_with("STA"));
+}
+
+TEST_CASE("What piles up goes at once, in real time too") {
+  PacketClient client(1);
+  client.packets();
+  client.send("INIT {ClassName USARBot.P2DX} {Name R1}\r\n", [&] { return client.session().robot.has_value(); });
+  client.report();
+  CHECK(client.packets().size() == 1);
+  while (client.session().out.size() <= 16384) client.session().out += "SEN {Type Nothing}\r\n";
+  client.flush();
+  CHECK(client.packets().size() == 1);
+  CHECK(client.session().out.empty());
+}
+
+TEST_CASE("A client that leaves after its last request is answered all the same") {
+  PacketClient client(1);
+  client.packets();
+  client.send_last("GETSTARTPOSES\r\nPING {Id 1}\r\nPING {Id 2}\r\n");
+  std::string all;
+  for (const std::string& packet : client.rest()) all += packet;
+  REQUIRE(support::eventually([&] {
+    for (const std::string& packet : client.rest()) all += packet;
+    return client.simulation.sessions.empty();
+  }));
+  CHECK(all.find("NFO {StartPoses ") != std::string::npos);
+  CHECK(all.find("PONG {Id 1}") != std::string::npos);
+  CHECK(all.ends_with("PONG {Id 2} {Time 0.0000}\r\n"));
+}
+
 TEST_CASE("A client with a Session gets a whole output by one send") {
-  PacketClient client;
+  PacketClient client(GENERATE(0, 1));
   client.packets();
   client.send("CONTROL {Type Session} {Period 0.01}\r\n", [&] { return client.session().extended; });
   CHECK(client.packets().size() == 1);
