@@ -1,4 +1,6 @@
 // DRIVE in its skid, Ackermann, body-velocity and joint forms, and MULTIDRIVE.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -123,6 +125,16 @@ void right_itself(Simulation& simulation, const SessionRobot& robot) {
   simulation.world.teleport(robot.id, X_WB);
 }
 
+void complain_of_numbers(const Simulation& simulation, Session& session, const MessageView& message) {
+  for (const protocol::usarsim::Group& group : message.all()) {
+    const bool numeric = is_any_of(
+        group.key, {"Left", "Right", "Speed", "FrontSteer", "RearSteer", "LinearVelocity", "RotationalVelocity"});
+    if (numeric && !protocol::usarsim::parse_number(group.value)) {
+      complain(simulation, session, fmt::format("DRIVE: {} is not a number", group.key), group.value);
+    }
+  }
+}
+
 void take_command(Simulation& simulation, Session& session) {
   session.last_command_step = simulation.world.step_count();
   session.silent = false;
@@ -136,6 +148,7 @@ void drive(Simulation& simulation, Session& session, const MessageView& message)
   SessionRobot& robot = *session.robot;
   robot.normalized = bool_of(message, "Normalized").value_or(robot.normalized);
   robot.light = bool_of(message, "Light").value_or(robot.light);
+  complain_of_numbers(simulation, session, message);
   if (message.find("Name")) drive_joints(simulation, session, message);
   if (message.find("Left") || message.find("Right")) {
     drive_skid(robot, message);

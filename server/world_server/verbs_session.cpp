@@ -12,7 +12,7 @@ namespace {
 // nullopt: refused.
 std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& session, const MessageView& message) {
   if (const std::string_view start = text_of(message, "Start"); !start.empty()) {
-    if (const auto X_WB = find_start_pose(simulation.world.description(), start)) return X_WB;
+    if (auto X_WB = find_start_pose(simulation.world.description(), start)) return X_WB;
     // UDK added the robot all the same, and its clients have names of its maps in their sources. A client that knows
     // this server is told by the robot's absence.
     if (session.extended) {

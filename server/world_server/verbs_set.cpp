@@ -128,7 +128,9 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
   const auto package = std::ranges::find_if(packages, [&](const physics::MissionPackageDescription& candidate) {
     return protocol::usarsim::equal_ignoring_case(candidate.name, text_of(message, "Name"));
   });
-  if (package == packages.end()) return;
+  if (package == packages.end()) {
+    return complain(simulation, session, "no such mission package on this robot", text_of(message, "Name"));
+  }
   const auto package_index = static_cast<std::size_t>(package - packages.begin());
 
   // {Link i} starts a set, {Value} and {Order} fill it.

@@ -53,6 +53,21 @@ TEST_CASE("A set for a joint that the robot lacks is said in the log") {
   CHECK(log.has("no such joint or order: \"FRFlipper\""));
 }
 
+TEST_CASE("A number that is none, and a mission package that the robot lacks, are said in the log") {
+  for (const auto& [line, words] :
+       {std::pair{"DRIVE {Left fast} {Right 1}", "DRIVE: Left is not a number: \"fast\""},
+        {"DRIVE {Speed nan}", "DRIVE: Speed is not a number: \"nan\""},
+        {"DRIVE {LinearVelocity}", "DRIVE: LinearVelocity is not a number: \"\""},
+        {"MISPKG {Name Arm} {Link 1} {Value 1}", "no such mission package on this robot: \"Arm\""}}) {
+    INFO(line);
+    Driven robot("P3AT");
+    const WholeLog log;
+    robot.send(std::string(line) + "\r\n");
+    CHECK(log.lines() == 1);
+    CHECK(log.has(words));
+  }
+}
+
 TEST_CASE("A P3AT's client drives straight on and turns") {
   Driven robot("P3AT", GENERATE(false, true));
   robot.send("DRIVE {Left 3} {Right 3}\r\n");
