@@ -32,8 +32,10 @@ void warn_of_namesakes(Simulation& simulation, Session& session) {
   for (const auto& other : simulation.sessions) {
     if (other.get() == &session || !other->robot) continue;
     if (!protocol::usarsim::equal_ignoring_case(other->robot->name, session.robot->name)) continue;
-    spdlog::warn("{}: robot {} has the name of the robot of {}: a request by name finds one of them", session.peer,
-                 session.robot->name, other->peer);
+    if (simulation.connection_log.allow(simulation.wall_s)) {
+      spdlog::warn("{}: robot {} has the name of the robot of {}: a request by name finds one of them", session.peer,
+                   session.robot->name, other->peer);
+    }
     for (Session* each : {&session, other.get()}) write_warning(simulation, *each, "another robot has the same name");
     return;
   }
