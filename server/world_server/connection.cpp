@@ -66,12 +66,12 @@ std::size_t Connection::send(std::string_view text, error_code& error) {
 }
 
 void Connection::pause() {
-  pausing_ = true;
   pause_timer_.expires_after(kPause);
   pause_timer_.async_wait([self = shared_from_this()](error_code cancelled) {
     self->pausing_ = false;
     if (!cancelled) self->flush();
   });
+  pausing_ = true;  // not earlier: the wait may throw
 }
 
 void Connection::take(std::string_view bytes) {
