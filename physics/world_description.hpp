@@ -43,7 +43,7 @@ struct StartPose {
 
 struct WorldDescription {
   std::string name;
-  Eigen::Vector3d gravity_W_mps2{0, 0, -9.80665};
+  Eigen::Vector3d gravity_W_mps2{0, 0, -9.80665};  // in any direction
   std::vector<GroundPlane> planes;
   std::vector<Box> boxes;
   std::vector<TriangleMesh> meshes;

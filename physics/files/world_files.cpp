@@ -118,13 +118,13 @@ fs::path WorldFiles::find(const std::string& uri, const std::string& named_in) c
       fmt::format("\"{}\": there is no such file in {}; KENAF_WORLD_PATH names more folders", uri, folders_in_words()));
 }
 
-std::string WorldFiles::read(const fs::path& file) {
-  const std::size_t most = std::min(kMostFileBytes, bytes_left_);
+std::string WorldFiles::read_at_most(const fs::path& file, std::size_t most_bytes) {
+  const std::size_t most = std::min(most_bytes, bytes_left_);
   std::string bytes;
   try {
     bytes = description::read_limited_file(file, most);
   } catch (const DescriptionError& error) {
-    const char* what_is_left = most < kMostFileBytes ? ", what is left of the 64 MiB of all of a world's files" : "";
+    const char* what_is_left = most < most_bytes ? ", what is left of the 64 MiB of all of a world's files" : "";
     throw DescriptionError(fmt::format("\"{}\" {}{}", file.string(), error.what(), what_is_left));
   }
   bytes_left_ -= bytes.size();
@@ -138,7 +138,7 @@ fs::path WorldFiles::model_in(const fs::path& folder) {
   if (!error) {
     if (!is_allowed(config))
       throw DescriptionError(fmt::format("{} is not in a folder of this world", (folder / "model.config").string()));
-    name = file_in_config(read(config));
+    name = file_in_config(read_at_most(config, kMostConfigBytes));
     if (name.empty())
       throw DescriptionError(fmt::format("{} names no model: it needs an <sdf> in its <model>", config.string()));
   }

@@ -14,7 +14,8 @@ namespace kenaf::physics {
 class WorldFiles {
  public:
   static constexpr std::size_t kMostFileBytes = std::size_t{16} << 20U;
-  static constexpr std::size_t kMostBytes = std::size_t{64} << 20U;  // of all files together
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20U;        // of all files together
+  static constexpr std::size_t kMostConfigBytes = std::size_t{64} << 10U;  // of a model.config
 
   // `world_file` is the world's name in places of errors. `own` is its folder; empty: it has none. Folders that do not
   // exist are left out; without any, the world may not refer to files.
@@ -35,19 +36,21 @@ class WorldFiles {
   std::filesystem::path find(const std::string& uri, const std::string& named_in) const;
 
   // Looks for a model in the same way. If `uri` names a folder, the model is the file that its model.config names for
-  // the newest version of SDF up to 1.9, or model.sdf. Returns nothing if there is none. Throws as find() and read().
+  // the newest version of SDF up to 1.9, or model.sdf. Returns nothing if there is none. Throws as find() and read(),
+  // and if a model.config has more than kMostConfigBytes or names no file.
   std::optional<std::filesystem::path> find_model(const std::string& uri, const std::string& named_in);
 
   // Returns the bytes of a file that was found; its size counts each time. Throws DescriptionError (without a place) if
   // it is no regular file, has more than kMostFileBytes, or more than kMostBytes together with all that were read
   // before.
-  std::string read(const std::filesystem::path& file);
+  std::string read(const std::filesystem::path& file) { return read_at_most(file, kMostFileBytes); }
 
   // The folders, for errors.
   std::string folders_in_words() const;
 
  private:
   std::optional<std::filesystem::path> look_for(const std::string& uri, const std::string& named_in) const;
+  std::string read_at_most(const std::filesystem::path& file, std::size_t most_bytes);
   bool is_allowed(const std::filesystem::path& canonical) const;
   std::filesystem::path model_in(const std::filesystem::path& folder);
 

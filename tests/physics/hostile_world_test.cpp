@@ -98,7 +98,7 @@ TEST_CASE("Pipes, devices and files of 1 GB are no models, meshes and height map
   };
   for (const char* name : {"model.sdf", "rock.stl", "hills.png"}) add(name);
   const std::vector<std::string> folders{"pipe", "endless", "huge"},
-      why{"not a file", "is not in a folder", "is larger than 16 MiB"};
+      why{"not a file", "is not in a folder", "is larger than"};
   const auto check = [&](const std::string& before, const std::string& after) {
     for (std::size_t i = 0; i < folders.size(); ++i)
       CHECK_THAT(error_of(world_with(before + folders[i] + after), folder),
@@ -239,6 +239,19 @@ TEST_CASE("Elements, attributes and points have a limit before they are read") {
   for (int i = 0; i < 20000; ++i) points += "<point>0 0</point>";
   CHECK_THAT(error_of(world_with(model("m", link(shape("<polyline>" + points + "</polyline>"))))),
              Catch::StartsWith("w.sdf:2: ") && Contains("at most 500 corners"));
+}
+
+TEST_CASE("A model.config has at most 64 KiB") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "m");
+  write_file(folder / "m/model.sdf", model_file(link("")));
+  const std::string config = "<model><sdf version=\"1.9\">model.sdf</sdf></model>";
+  const auto padded = [&](std::size_t bytes) { return config + std::string(bytes - config.size(), ' '); };
+  write_file(folder / "m/model.config", padded(65536));
+  CHECK(error_of(world_with(include("m")), folder.path()) == kLoads);
+  write_file(folder / "m/model.config", padded(65537));
+  CHECK_THAT(error_of(world_with(include("m")), folder.path()),
+             Catch::StartsWith("w.sdf:2: ") && Contains("model.config\" is larger than 65536 bytes"));
 }
 
 TEST_CASE("All files of a world have 64 MiB together") {
