@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -53,6 +54,8 @@ struct ImageServer::Implementation {
 
   ImageDesk desk;
   asio::io_context io{1};
+  // Without it the context would stop for good in a moment without any pending operation, after a failed accept.
+  asio::executor_work_guard<asio::io_context::executor_type> always_work{io.get_executor()};
   tcp::acceptor acceptor;
   asio::steady_timer accept_again{io};
   std::shared_ptr<void> listening;
@@ -93,12 +96,20 @@ bool ImageServer::Implementation::make_room() {
 
 void ImageServer::Implementation::serve() {
   pthread_setname_np(pthread_self(), "kenaf-images");
+  bool accept_anew = false;
   for (;;) {
     try {
+      if (accept_anew) {
+        error_code ignored;
+        acceptor.cancel(ignored);
+        accept();
+        accept_anew = false;
+      }
       io.run();
       return;
     } catch (const std::exception& error) {
       spdlog::error("image server: {}", error.what());  // concerns one connection; the others are still served
+      accept_anew = true;  // it may have been an accept, whose handler Asio then never calls
     }
   }
 }

@@ -47,8 +47,8 @@ struct Hub {
   std::uint64_t last_question = 0;
   std::shared_ptr<const bool> here = std::make_shared<const bool>(true);
 
-  // Has the world's thread carry out `request`, and then this thread call `done` with its result; neither, if the world
-  // starts to run only after this has ended.
+  // Has the world's thread carry out `request`, and then this thread call `done` with its result, or with an empty one
+  // if it threw; neither, if the world starts to run only after this has ended.
   template <typename Request, typename Done>
   void ask(Request request, Done done) {
     auto answer = std::make_shared<std::invoke_result_t<Request&, world_server::Simulation&>>();
@@ -57,8 +57,16 @@ struct Hub {
     world.ask([this, still = std::weak_ptr(here), request = std::move(request), answer = std::move(answer),
                number](world_server::Simulation& simulation) {
       if (still.expired()) return;
-      *answer = request(simulation);
-      boost::asio::post(site.io, [this, number] { waiting.extract(number).mapped()(); });
+      const auto answer_page = [this, number] {
+        boost::asio::post(site.io, [this, number] { waiting.extract(number).mapped()(); });
+      };
+      try {
+        *answer = request(simulation);
+      } catch (...) {  // the world's thread logs it; the page must not wait for ever
+        answer_page();
+        throw;
+      }
+      answer_page();
     });
   }
 };

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
@@ -53,6 +55,8 @@ struct WebServer::Implementation {
   const std::string address;
   tcp::acceptor acceptor;
   asio::steady_timer accept_again;
+  // Without it the context would stop for good in a moment without any pending operation, after a failed accept.
+  asio::executor_work_guard<asio::io_context::executor_type> always_work;
   std::thread thread{};
 };
 
@@ -72,19 +76,27 @@ void WebServer::Implementation::accept() {
 }
 
 void WebServer::Implementation::serve() {
+  bool accept_anew = false;
   for (;;) {
     try {
+      if (accept_anew) {
+        error_code ignored;
+        acceptor.cancel(ignored);
+        accept();
+        accept_anew = false;
+      }
       site.io.run();
       return;
     } catch (const std::exception& error) {
       spdlog::error("page: {}", error.what());  // concerns one connection; the others are still served
+      accept_anew = true;                       // it may have been an accept, whose handler Asio then never calls
     }
   }
 }
 
 WebServer::WebServer(Site& site, const ViewOptions& options)
     : impl_(new Implementation{site, options.address, listen_for_browsers(site.io, options),
-                               asio::steady_timer(site.io)}) {}
+                               asio::steady_timer(site.io), asio::make_work_guard(site.io)}) {}
 
 WebServer::~WebServer() {
   impl_->site.io.stop();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -77,6 +78,8 @@ struct WorldServer::Implementation {
   void close_all();
 
   asio::io_context io{1};
+  // Without it the context would stop for good in a moment without any pending operation, after a failed accept.
+  asio::executor_work_guard<asio::io_context::executor_type> always_work{io.get_executor()};
   Simulation simulation;
   tcp::acceptor acceptor;
   asio::steady_timer accept_again{io};
@@ -93,13 +96,15 @@ struct WorldServer::Implementation {
 
 void WorldServer::Implementation::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
     accepting = false;  // run() goes on with the next
-    if (!acceptor.is_open()) return;
     if (!error) return welcome(std::move(socket));
     // Mostly too many open files: retrying at once would only use processor time.
     if (connection_log.allow(steady_seconds())) spdlog::error("cannot accept a client: {}", error.message());
     accept_again.expires_after(std::chrono::milliseconds(100));
-    accept_again.async_wait([this](error_code) { accepting = false; });
+    accept_again.async_wait([this](error_code cancelled) {
+      if (!cancelled) accepting = false;
+    });
     accepting = true;
   });
   accepting = true;
@@ -156,6 +161,11 @@ void WorldServer::Implementation::watch_peers() {
 
 // Of anything in run(): whom it concerns is gone already, and the others are served on.
 void WorldServer::Implementation::note_failure(const std::exception& failure) {
+  // It may have been an accept, whose handler Asio then never calls.
+  error_code ignored;
+  acceptor.cancel(ignored);
+  accept_again.cancel();
+  accepting = false;
   if (failure_log.allow(steady_seconds())) spdlog::error("the world server goes on after: {}", failure.what());
 }
 

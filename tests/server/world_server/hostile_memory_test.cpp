@@ -1,10 +1,13 @@
 // Memory that is out: it ends the connection for which it was needed, or that of the newest robot, and nothing else.
 #include <spdlog/spdlog.h>
 
+#include <future>
 #include <new>
 #include <string>
+#include <thread>
 
 #include "server/world_server/manual_drive.hpp"
+#include "server/world_server/world_server.hpp"
 #include "tests/server/world_server/conversation.hpp"
 #include "tests/support/heap_calls.hpp"
 
@@ -117,6 +120,48 @@ TEST_CASE("A turn in which memory is out throws nothing, ends one session at mos
     talk.check_and_clear();
   }
   CHECK(n > 1);
+}
+
+TEST_CASE("A server whose memory is out while it welcomes a client serves the next one") {
+  const spdlog::level::level_enum before = spdlog::get_level();
+  spdlog::set_level(spdlog::level::off);
+  ServerOptions options;
+  options.port = 0;
+  WorldServer server(options);
+  std::thread thread([&] { server.run(); });
+  // The heap of the server's own thread.
+  const auto in_its_thread = [&](auto work) {
+    std::promise<bool> done;
+    server.ask([&](Simulation&) { done.set_value(work()); });
+    return done.get_future().get();
+  };
+
+  long n = 0;
+  for (bool failed = true; failed;) {
+    ++n;
+    in_its_thread([n] {
+      test::fail_heap_call(n);
+      return true;
+    });
+    try {
+      support::UsarsimClient client(server.port());
+      client.send("PING {Id 1}\r\nCONTROL {Type Session} {Period 0.1}\r\n");
+      client.line_that_begins("RES");
+    } catch (const std::exception&) {  // closed: its memory was out
+    }
+    failed = in_its_thread([] {
+      const bool has_failed = test::heap_call_failed();
+      test::fail_heap_call(0);
+      return has_failed;
+    });
+    support::UsarsimClient next(server.port());
+    next.send("PING {Id 2}\r\n");
+    CHECK(next.line_that_begins("PONG").starts_with("PONG {Id 2}"));
+  }
+  CHECK(n > 3);
+  server.stop();
+  thread.join();
+  spdlog::set_level(before);
 }
 
 }  // namespace kenaf::world_server

@@ -228,6 +228,19 @@ TEST_CASE("The robot of a client whose network is gone stops, then leaves, and a
   CHECK(status == 0);
 }
 
+TEST_CASE("Clients that connect and are gone at once leave a server that answers the next") {
+  ServedSimulation served;
+  for (int i = 0; i < 200; ++i) {
+    const int client = test::connect_to_loopback(served.port());
+    const linger reset{1, 0};  // by RST
+    ::setsockopt(client, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+    ::close(client);
+    if (i % 20 != 0) continue;
+    UsarsimClient next(served.port());
+    CHECK(next.line_that_begins("NFO").starts_with("NFO"));
+  }
+}
+
 TEST_CASE("Idle connections give way to a client when all are taken, and robots never do") {
   ServerOptions options;
   options.idle_s = 0;
