@@ -36,7 +36,8 @@ TEST_CASE("A thousand small boxes in a heap have too many neighbours, and none o
   // Cubes of 1 cm, 2 cm apart, fall onto each other: Bullet takes boxes within some centimetres for near.
   World world = flat();
   for (int i = 0; i < 1000; ++i) {
-    world.add_box(cube(0.01, {0.02 * (i % 10), 0.02 * (i / 10 % 10), 0.006 + 0.02 * (i / 100)}, 0.1));
+    const int column = i % 10, row = i / 10 % 10, layer = i / 100;
+    world.add_box(cube(0.01, {0.02 * column, 0.02 * row, 0.006 + 0.02 * layer}, 0.1));
   }
   for (int i = 0; i < 150; ++i) world.step();
   CHECK(world.pairs_left_out() > 0);

@@ -85,8 +85,8 @@ TEST_CASE("A world of a thousand boxes answers, and a signal ends it") {
   // As close to each other as is allowed, in piles that overlap: whatever is refused, answers come.
   int made = 0;
   for (int i = 0; i < 1000; ++i) {
-    const std::string n = std::to_string(i), x = std::to_string(5 + 0.1 * (i % 100)),
-                      z = std::to_string(-1 - 0.1 * (i / 100));
+    const int column = i % 100, layer = i / 100;
+    const std::string n = std::to_string(i), x = std::to_string(5 + 0.1 * column), z = std::to_string(-1 - 0.1 * layer);
     client.send("CONTROL {Type Create} {ClassName Box} {Name Box" + n + "} {Location " + x + ",0," + z +
                 "} {Scale 0.5,0.5,0.5} {Physics RigidBody}\r\n");
     if (client.line_that_begins("RES").find("{Status OK}") != std::string::npos) ++made;
