@@ -304,7 +304,8 @@ enum {
   HRT_RECORDING = 1 << 3,          /* a recording is under way */
   HRT_IN_LOCKSTEP = 1 << 4,        /* robot time waits for this program */
   HRT_DEGRADED = 1 << 5            /* the robot lacks something, or (libkenaf_real) its configuration does not fit its
-                                      description: hrt_get_warning says what */
+                                      description, or (libkenaf_sim) it did not begin at the first start pose:
+                                      hrt_get_warning says what */
 };
 
 /* State of the robot as of one cycle. */
