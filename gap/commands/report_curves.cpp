@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "gap/diagnose/page/overlays.hpp"
+#include "gap/diagnose/report.hpp"
 #include "gap/recordings/table_channels.hpp"
 
 namespace kenaf::gap::commands {
@@ -20,15 +20,14 @@ recordings::Table table_of(const runs::Run& run) {
 
 void write_report_curves(const diagnose::Diagnosis& diagnosis, const std::filesystem::path& file) {
   recordings::McapWriter writer(file);
-  for (const diagnose::Overlay& overlay : diagnose::simulate_overlays(diagnosis)) {
-    const diagnose::Observation& measured = diagnosis.observations.runs[overlay.run];
+  for (const diagnose::ShownRun& shown : diagnose::shown_runs(diagnosis)) {
+    const std::string name = std::filesystem::path(shown.file).stem().string();
     const auto write = [&](const runs::Run& run, const char* kind) {
-      const std::string name = std::filesystem::path(measured.file).stem().string();
       recordings::write_table(writer, table_of(run), fmt::format("/{}/{}/", name, kind));
     };
-    write(measured.run, "real");
-    write(overlay.nominal, "nominal");
-    if (overlay.corrected) write(*overlay.corrected, "corrected");
+    write(shown.real, "real");
+    write(shown.nominal, "nominal");
+    if (shown.corrected) write(*shown.corrected, "corrected");
   }
   writer.finish();
 }

@@ -5,8 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gap/diagnose/diagnosis.hpp"
 
@@ -18,6 +20,14 @@ std::string diagnosis_text(const Diagnosis& diagnosis);
 std::string diagnosis_json(const Diagnosis& diagnosis);
 // A self-contained page without scripts.
 std::string diagnosis_html(const Diagnosis& diagnosis);
+
+// The runs that the page draws, one of each manoeuvre, whole and with all their columns. Simulates them.
+struct ShownRun {
+  std::string file;  // of the measured run, in its dataset
+  runs::Run real, nominal;
+  std::optional<runs::Run> corrected;  // if an effect was fitted
+};
+std::vector<ShownRun> shown_runs(const Diagnosis& diagnosis);
 
 // The nominal description with corrections(), preceded by comments on what it does not contain. Comments of the
 // description stay as far as robot_toml_with() keeps them.
