@@ -184,7 +184,7 @@ std::string describe(const Frame& frame, const Network& network) {
 }
 
 std::string describe(const LogFrame& logged, const Network& network) {
-  if (logged.kind != canopen::CandumpKind::data) return std::string(describe(logged.kind));
+  if (logged.kind != canopen::FrameKind::data) return std::string(describe(logged.kind));
   return describe(logged.frame, network);
 }
 

@@ -14,7 +14,7 @@
 namespace kenaf::canlog {
 namespace {
 
-using canopen::CandumpKind;
+using canopen::FrameKind;
 using canopen::Time;
 
 constexpr double kGap = 1.5;  // periods
@@ -26,7 +26,8 @@ double seconds(Time time) {
 // Traffic between one SYNC and the next.
 struct Cycle {
   Time sync_at;
-  std::size_t frame;  // index of the SYNC in the log
+  std::size_t frame;        // index of the SYNC in the log
+  std::size_t clock_steps;  // as of that frame
   std::optional<Time> last_answer{}, last_command{};
   std::set<std::size_t> commanded{};  // drives
 };
@@ -35,9 +36,9 @@ std::vector<Cycle> cycles_of(const Log& log, const Network& network) {
   std::vector<Cycle> cycles;
   for (std::size_t i = 0; i < log.frames.size(); ++i) {
     const LogFrame& logged = log.frames[i];
-    if (logged.kind != CandumpKind::data) continue;
-    if (canopen::is_sync(logged.frame)) cycles.push_back({logged.at, i});
-    if (cycles.empty()) continue;
+    if (logged.kind != FrameKind::data) continue;
+    if (canopen::is_sync(logged.frame)) cycles.push_back({logged.at, i, logged.clock_steps});
+    if (cycles.empty() || cycles.back().clock_steps != logged.clock_steps) continue;
     Cycle& cycle = cycles.back();
     const Service service = address_of(logged.frame.id).service;
     if (service == Service::transmit_pdo) cycle.last_answer = logged.at;
@@ -52,7 +53,7 @@ Traffic traffic_of(const Log& log, std::size_t first, std::size_t last) {
   double bits = 0, worst_case = 0;
   for (std::size_t i = first; i < last; ++i) {  // without the last frame, which ends after the stretch
     const LogFrame& logged = log.frames[i];
-    if (logged.kind != CandumpKind::data) continue;
+    if (logged.kind != FrameKind::data || logged.clock_steps != log.frames[i + 1].clock_steps) continue;
     ++traffic.frames;
     bits += wire_bits(logged.frame);
     worst_case += worst_case_bits(logged.frame);
@@ -67,8 +68,10 @@ Traffic traffic_of(const Log& log, std::size_t first, std::size_t last) {
 
 void add_sync(const std::vector<Cycle>& cycles, Figures& figures) {
   std::vector<double> intervals_s, jitter_s;
-  for (std::size_t i = 1; i < cycles.size(); ++i)
-    intervals_s.push_back(seconds(cycles[i].sync_at - cycles[i - 1].sync_at));
+  for (std::size_t i = 1; i < cycles.size(); ++i) {
+    if (cycles[i].clock_steps == cycles[i - 1].clock_steps)
+      intervals_s.push_back(seconds(cycles[i].sync_at - cycles[i - 1].sync_at));
+  }
   const auto intervals = spread_of(intervals_s);
   if (!intervals) return;
   figures.period_s = intervals->median_s;
@@ -97,6 +100,7 @@ void add_late_commands(const Log& log, const Network& network, const std::vector
   for (const LoopSpan& span : loop_spans(log, network)) {
     auto cycle = std::ranges::lower_bound(cycles, span.first, {}, &Cycle::frame);
     for (; cycle != cycles.end() && cycle + 1 != cycles.end() && (cycle + 1)->frame <= span.last; ++cycle) {
+      if (cycle->clock_steps != (cycle + 1)->clock_steps) continue;
       ++figures.driven_cycles;
       if (cycle->commanded.size() < canbus::kDriveCount) ++figures.late_commands;
     }
@@ -132,10 +136,13 @@ Figures figures_of(const Log& log, const Network& network) {
   Figures figures;
   if (log.frames.empty()) return figures;
   for (const LogFrame& logged : log.frames) {
-    if (logged.kind == CandumpKind::error) ++figures.error_messages;
-    if (logged.kind != CandumpKind::error && logged.kind != CandumpKind::data) ++figures.other_frames;
+    if (logged.kind == FrameKind::error) ++figures.error_messages;
+    if (logged.kind != FrameKind::error && logged.kind != FrameKind::data) ++figures.other_frames;
   }
+  figures.has_times = log.has_times;
+  figures.clock_steps = log.clock_steps.size();
   figures.all = traffic_of(log, 0, log.frames.size() - 1);
+  if (!log.has_times && log.frames.back().kind == FrameKind::data) ++figures.all.frames;
   const std::vector<Cycle> cycles = cycles_of(log, network);
   figures.cycles = cycles.size();
   if (cycles.size() > 1) figures.with_sync = traffic_of(log, cycles.front().frame, cycles.back().frame);
@@ -146,6 +153,10 @@ Figures figures_of(const Log& log, const Network& network) {
 }
 
 std::string to_text(const Figures& figures, double bit_rate) {
+  if (!figures.has_times) {
+    return fmt::format("{:<22}{} frames, {} SYNC; the log has no times (record with `candump -L`)\n", "all",
+                       figures.all.frames, figures.cycles);
+  }
   std::string text = traffic_line("all", figures.all, bit_rate);
   if (figures.with_sync) text += traffic_line("first to last SYNC", *figures.with_sync, bit_rate);
   if (figures.period_s) {
@@ -156,6 +167,8 @@ std::string to_text(const Figures& figures, double bit_rate) {
   text += spread_line("answers after SYNC", figures.answer_time);
   text += spread_line("commands after SYNC", figures.command_time);
   text += fmt::format("{:<22}{} of {} driven cycles\n", "late commands", figures.late_commands, figures.driven_cycles);
+  if (figures.clock_steps > 0)
+    text += fmt::format("{:<22}{}, not crossed by the figures above\n", "steps of the clock", figures.clock_steps);
   if (figures.other_frames > 0)
     text += fmt::format("{:<22}{}, not counted above\n", "not CANopen", figures.other_frames);
   if (figures.error_messages > 0) text += fmt::format("{:<22}{}\n", "driver's errors", figures.error_messages);

@@ -18,7 +18,8 @@ struct Spread {
 // Median and p99: the smallest value not less than 50 % and 99 % of all values, respectively; nullopt for none.
 std::optional<Spread> spread_of(std::vector<double> values_s);
 
-// A stretch of the log, from the start of its first frame to that of its last.
+// A stretch of the log, from the start of its first frame to that of its last; frames before a step of the recorder's
+// clock do not count.
 struct Traffic {
   double duration_s = 0;
   std::size_t frames = 0;
@@ -32,6 +33,8 @@ struct Figures {
   std::optional<Traffic> with_sync;  // from the first SYNC to the last: the loop, with power-up and shutdown
   std::size_t other_frames = 0;      // kinds that CANopen does not use; not in the traffic
   std::size_t error_messages = 0;    // of the CAN driver
+  bool has_times = true;             // false: only numbers of frames mean something
+  std::size_t clock_steps = 0;       // of the recorder's clock, backwards: no figure crosses one
 
   std::size_t cycles = 0;              // SYNCs
   std::optional<double> period_s;      // median of the times between two SYNCs

@@ -36,9 +36,9 @@ bool FrameRules::check(const LogFrame& logged, const Address& address) {
 }
 
 bool FrameRules::check_kind(const LogFrame& logged) {
-  if (logged.kind == canopen::CandumpKind::data) return true;
+  if (logged.kind == canopen::FrameKind::data) return true;
   // driver messages about the wire are not frames on it
-  if (logged.kind != canopen::CandumpKind::error && strange_kinds_.insert(logged.kind).second)
+  if (logged.kind != canopen::FrameKind::error && strange_kinds_.insert(logged.kind).second)
     findings_.add(logged, rule::identifier, "{} is on the bus", describe(logged.kind));
   return false;
 }

@@ -28,7 +28,7 @@ class FrameRules {
   Findings& findings_;
   // each reported once: an unexpected sender repeats itself
   std::set<std::uint16_t> strange_ids_;
-  std::set<canopen::CandumpKind> strange_kinds_;
+  std::set<canopen::FrameKind> strange_kinds_;
 };
 
 }  // namespace kenaf::canlog

@@ -55,7 +55,7 @@ std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
   bool within = false;
   for (std::size_t i = 0; i < log.frames.size(); ++i) {
     const LogFrame& logged = log.frames[i];
-    if (logged.kind != canopen::CandumpKind::data) continue;
+    if (logged.kind != canopen::FrameKind::data) continue;
     const Address address = address_of(logged.frame.id);
 
     // Tracks the drives' modes and states, on which the meaning of a command depends.

@@ -49,10 +49,12 @@ canopen::Time from_ms(double ms) {
   return std::chrono::round<canopen::Time>(std::chrono::duration<double, std::milli>(ms));
 }
 
-// Times are relative to the first frame.
+// Times are relative to the first frame; a log may have none.
 void print_words(const canlog::Log& log, const canlog::Network& network) {
-  for (const canlog::LogFrame& logged : log.frames)
-    fmt::print("{:12.6f}  {}\n", seconds(logged.at - log.frames.front().at), describe(logged, network));
+  for (const canlog::LogFrame& logged : log.frames) {
+    if (log.has_times) fmt::print("{:12.6f}  ", seconds(logged.at - log.frames.front().at));
+    fmt::print("{}\n", describe(logged, network));
+  }
 }
 
 bool print_violations(const Options& options, const canlog::Log& log, const canlog::Network& network) {
@@ -83,11 +85,19 @@ int run(const Options& options) {
   const canlog::Network network(canbus::load_robot_bus(options.robot));
   const canlog::Log log = load_log(options);
   for (const canlog::BadLine& bad : log.bad_lines) fmt::print(stderr, "{}:{}: {}\n", options.log, bad.line, bad.words);
+  if (!log.has_times) fmt::print(stderr, "{}: the log has no times\n", options.log);
+  if (log.summed_times) {
+    fmt::print(stderr, "{}: the times are intervals (`candump -td`): they are summed up\n", options.log);
+  }
+  for (const canlog::ClockStep& step : log.clock_steps) {
+    fmt::print(stderr, "{}:{}: the recorder's clock steps back by {:.6f} s: the log's time stands still over it\n",
+               options.log, step.line, seconds(step.back));
+  }
   if (log.other_interfaces > 0) {
     fmt::print(stderr, "{}: {} lines are not from {} and were left out (--interface chooses another)\n", options.log,
                log.other_interfaces, log.interface);
   }
-  if (log.frames.empty()) throw std::runtime_error(options.log + ": contains no frame; is it a log of `candump -L`?");
+  if (log.frames.empty()) throw std::runtime_error(options.log + ": contains no frame; is it a log of a CAN bus?");
   if (!options.check && !options.figures) print_words(log, network);
   if (options.figures) fmt::print("{}", to_text(figures_of(log, network), options.bit_rate));
   const bool broken = options.check && !print_violations(options, log, network);

@@ -2,69 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <vector>
+
+#include "can/canopen/candump_screen.hpp"
+#include "can/canopen/candump_stamp.hpp"
+#include "can/canopen/text_fields.hpp"
 
 namespace kenaf::canopen {
 namespace {
 
+using text::digit;
+using text::quoted;
+using text::take_word;
+
 constexpr std::uint32_t kErrorFlag = 1u << 29, kMaxExtendedId = (1u << 29) - 1, kMaxId = 0x7ff;
 constexpr std::size_t kStandardDigits = 3, kExtendedDigits = 8, kMaxFdBytes = 64, kMaxInterface = 15;
-constexpr std::size_t kMaxSecondsDigits = 10;
-constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // larger values do not fit in 64-bit nanoseconds
-
-int digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  return -1;
-}
-
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-
-bool is_decimal(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-std::int64_t decimal(std::string_view digits) {
-  std::int64_t value = 0;
-  for (const char c : digits) value = 10 * value + (c - '0');
-  return value;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-// Returns the first word of `rest` and removes it.
-std::string_view take_word(std::string_view& rest) {
-  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest, is_blank) - rest.begin());
-  const std::string_view word = rest.substr(0, end);
-  rest = trimmed(rest.substr(end));
-  return word;
-}
-
-Time parse_time(std::string_view word) {
-  const auto bad = [&] {
-    return BadCandumpLine(fmt::format("\"{}\" is not a time such as (1436509052.249713)", word));
-  };
-  if (word.size() < 2 || word.front() != '(' || word.back() != ')') throw bad();
-  const std::string_view number = word.substr(1, word.size() - 2);
-  const std::size_t point = number.find('.');
-  if (point == std::string_view::npos) throw bad();
-  const std::string_view whole = number.substr(0, point), fraction = number.substr(point + 1);
-  if (!is_decimal(whole) || !is_decimal(fraction) || whole.size() > kMaxSecondsDigits || fraction.size() > 9)
-    throw bad();
-  if (decimal(whole) > kMaxSeconds) throw bad();
-  std::int64_t nanoseconds = decimal(fraction);
-  for (std::size_t i = fraction.size(); i < 9; ++i) nanoseconds *= 10;
-  return std::chrono::seconds(decimal(whole)) + Time(nanoseconds);
-}
 
 // Pairs of hexadecimal digits, optionally separated by points; nullopt: anything else, or more than `most`.
 std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text, std::size_t most) {
@@ -78,21 +31,12 @@ std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text, std:
   return bytes;
 }
 
-std::optional<std::uint32_t> parse_id(std::string_view digits) {
-  if (digits.size() != kStandardDigits && digits.size() != kExtendedDigits) return std::nullopt;
-  std::uint32_t id = 0;
-  for (const char c : digits) {
-    if (digit(c) < 0) return std::nullopt;
-    id = id << 4 | static_cast<std::uint32_t>(digit(c));
-  }
-  const bool standard = digits.size() == kStandardDigits;
-  if (standard ? id > kMaxId : id > (kMaxExtendedId | kErrorFlag)) return std::nullopt;
-  return id;
-}
-
-bool is_remote(std::string_view data) {
-  if (data.empty() || (data.front() != 'R' && data.front() != 'r')) return false;
-  return data.size() == 1 || (data.size() == 2 && data[1] >= '0' && data[1] <= '8');
+// How many bytes a remote frame asks for; nullopt: the data are not a remote frame's.
+std::optional<std::uint8_t> asked_bytes(std::string_view data) {
+  if (data.empty() || (data.front() != 'R' && data.front() != 'r')) return std::nullopt;
+  if (data.size() == 1) return std::uint8_t{0};
+  if (data.size() != 2 || data[1] < '0' || data[1] > '8') return std::nullopt;
+  return static_cast<std::uint8_t>(data[1] - '0');
 }
 
 bool is_fd(std::string_view data) {
@@ -109,64 +53,103 @@ std::optional<std::vector<std::uint8_t>> parse_classic(std::string_view data) {
   return raw_length ? bytes : std::nullopt;
 }
 
-void parse_frame(std::string_view word, CandumpLine& line) {
-  // IDENTIFIER#DATA; the number of the identifier's digits says whether it has 11 or 29 bits.
+// IDENTIFIER#DATA; the number of the identifier's digits says whether it has 11 or 29 bits.
+void parse_frame(std::string_view word, RecordedFrame& line) {
   const std::size_t mark = word.find('#');
-  if (mark == std::string_view::npos) throw BadCandumpLine(fmt::format("\"{}\" is not a frame such as 1A5#2C01", word));
-  const std::optional<std::uint32_t> id = parse_id(word.substr(0, mark));
-  if (!id) {
-    throw BadCandumpLine(
-        fmt::format("\"{}\" is not an identifier: three hexadecimal digits up to 7FF, or eight up to 3FFFFFFF",
-                    word.substr(0, mark)));
-  }
+  if (mark == std::string_view::npos) throw BadLogLine(fmt::format("{} is not a frame such as 1A5#2C01", quoted(word)));
+  const CandumpId id = parse_candump_id(word.substr(0, mark));
 
-  // The kind, by data and identifier. Error frames have 29 bits with the error flag, and always bytes.
+  // The kind, by data and identifier. Error frames always have bytes.
   const std::string_view data = word.substr(mark + 1);
-  const bool extended = mark == kExtendedDigits, error = extended && (*id & kErrorFlag) != 0;
-  const auto bytes = parse_classic(data);
-  if (error && bytes) {
-    line.kind = CandumpKind::error;
-  } else if (!error && is_remote(data)) {
-    line.kind = CandumpKind::remote;
-  } else if (!error && is_fd(data)) {
-    line.kind = CandumpKind::fd;
-  } else if (!bytes) {
-    throw BadCandumpLine(
-        fmt::format("\"{}\" is not frame data: up to eight bytes of two hexadecimal digits each", data));
-  } else if (extended) {
-    line.kind = CandumpKind::extended;
+  if (const auto bytes = parse_classic(data)) return set_frame(line, id, *bytes);
+  const auto asked = asked_bytes(data);
+  if (!id.error && asked) {
+    line.kind = id.extended ? FrameKind::extended : FrameKind::remote;
+    if (!id.extended) line.frame = Frame{.id = static_cast<std::uint16_t>(id.id), .length = *asked};
+  } else if (!id.error && is_fd(data)) {
+    line.kind = FrameKind::fd;
   } else {
-    line.kind = CandumpKind::data;
-    line.frame = make_frame(static_cast<std::uint16_t>(*id), *bytes);
+    throw BadLogLine(
+        fmt::format("{} is not frame data: up to eight bytes of two hexadecimal digits each", quoted(data)));
   }
+}
+
+// Without the colours of a terminal: escape, '[', numbers, a letter.
+std::string without_colours(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\x1b') {
+      plain += text[i];
+    } else {
+      while (i + 1 < text.size() && text[i] != 'm') ++i;
+    }
+  }
+  return plain;
+}
+
+RecordedFrame parse_plain(std::string_view text) {
+  std::string_view rest = text::trimmed(text);
+  const CandumpStamp stamp = take_candump_stamp(rest);
+  const std::string_view first = rest.substr(0, rest.find_first_of(" \t"));
+  RecordedFrame line{.at = stamp.at, .interface = std::string(take_word(rest)), .stamp = stamp.stamp};
+  const bool on_screen = is_candump_screen(rest);
+  if (stamp.stamp == Stamp::none && !on_screen)
+    throw BadLogLine(fmt::format("{} is not a time such as (1436509052.249713)", quoted(first)));
+  if (line.interface.empty() || line.interface.size() > kMaxInterface)
+    throw BadLogLine(fmt::format("{} is not the name of an interface: 1 to 15 characters", quoted(line.interface)));
+  if (on_screen) {
+    parse_candump_screen(rest, line);
+    return line;
+  }
+  parse_frame(take_word(rest), line);
+  if (!rest.empty() && rest != "T" && rest != "R") throw BadLogLine(fmt::format("{} follows the frame", quoted(rest)));
+  return line;
 }
 
 }  // namespace
 
-std::string_view describe(CandumpKind kind) {
+std::string_view describe(FrameKind kind) {
   switch (kind) {
-    case CandumpKind::data:
+    case FrameKind::data:
       return "a data frame";
-    case CandumpKind::extended:
+    case FrameKind::extended:
       return "a frame with an identifier of 29 bits";
-    case CandumpKind::remote:
+    case FrameKind::remote:
       return "a remote frame";
-    case CandumpKind::fd:
+    case FrameKind::fd:
       return "a CAN FD frame";
-    case CandumpKind::error:
+    case FrameKind::error:
       return "an error message of the CAN driver";
   }
   return "an unknown kind of frame";
 }
 
-CandumpLine parse_candump_line(std::string_view text) {
-  std::string_view rest = trimmed(text);
-  CandumpLine line{.at = parse_time(take_word(rest)), .interface = std::string(take_word(rest)), .kind = {}};
-  if (line.interface.empty() || line.interface.size() > kMaxInterface)
-    throw BadCandumpLine(fmt::format("\"{}\" is not the name of an interface: 1 to 15 characters", line.interface));
-  parse_frame(take_word(rest), line);
-  if (!rest.empty() && rest != "T" && rest != "R") throw BadCandumpLine(fmt::format("\"{}\" follows the frame", rest));
-  return line;
+RecordedFrame parse_candump_line(std::string_view text) {
+  if (text.find('\x1b') == std::string_view::npos) return parse_plain(text);
+  return parse_plain(without_colours(text));
+}
+
+CandumpId parse_candump_id(std::string_view digits) {
+  const bool standard = digits.size() == kStandardDigits, extended = digits.size() == kExtendedDigits;
+  const auto id = text::hexadecimal(digits);
+  if ((!standard && !extended) || !id || *id > (standard ? kMaxId : kMaxExtendedId | kErrorFlag)) {
+    throw BadLogLine(fmt::format("{} is not an identifier: three hexadecimal digits up to 7FF, or eight up to 3FFFFFFF",
+                                 quoted(digits)));
+  }
+  return {*id & kMaxExtendedId, extended, extended && (*id & kErrorFlag) != 0};
+}
+
+void set_frame(RecordedFrame& line, CandumpId id, std::span<const std::uint8_t> bytes) {
+  if (id.error) {
+    line.kind = FrameKind::error;
+    line.error_class = id.id;
+    line.frame = make_frame(0, bytes);
+  } else if (id.extended) {
+    line.kind = FrameKind::extended;
+  } else {
+    line.kind = FrameKind::data;
+    line.frame = make_frame(static_cast<std::uint16_t>(id.id), bytes);
+  }
 }
 
 std::string candump_line(Time at, std::string_view interface, const Frame& frame) {

@@ -1,4 +1,4 @@
-// One line of a recorded bus, as can-utils' `candump -L` writes it and canplayer reads it:
+// One line of a recorded bus, as can-utils' candump prints it. With -L, which canplayer reads too:
 //
 //   (1436509052.249713) vcan0 1A5#2C01            a data frame with an identifier of 11 bits: three digits
 //   (1436509052.249713) vcan0 000001A5#2C01       ... of 29 bits: eight digits
@@ -7,38 +7,35 @@
 //   (1436509052.249713) vcan0 20000004#000C000000000000    an error message of the driver: bit 29 of eight digits
 //
 // Bytes may be separated by '.'; a classic frame of eight bytes may end in '_' and a raw length code of 9 to F; newer
-// versions end the line in " T" or " R", sent or received. CANopen uses only data frames with 11-bit identifiers: the
-// other kinds are recognised but not decoded. Format: can-utils, lib.h and log2asc.c.
+// versions end the line in " T" or " R", sent or received. Without -L: candump_screen.hpp, with or without a time in
+// front. Times: candump_stamp.hpp. CANopen uses only identifiers of 11 bits: frames with 29 bits and CAN FD frames are
+// recognised but not decoded. Format: can-utils, lib.h and log2asc.c. Pure functions.
 #pragma once
 
-#include <stdexcept>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "can/canopen/frame.hpp"
+#include "can/canopen/recorded_frame.hpp"
 
 namespace kenaf::canopen {
 
-enum class CandumpKind : std::uint8_t { data, extended, remote, fd, error };
-std::string_view describe(CandumpKind kind);  // "a CAN FD frame"
-
-struct CandumpLine {
-  Time at;  // by the recording clock; candump: since 1970
-  std::string interface;
-  CandumpKind kind;
-  Frame frame{};  // for kind data; otherwise empty
-};
-
-// The error in a line.
-class BadCandumpLine : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-// Parses one line without its end; leading and trailing blanks are ignored. Throws BadCandumpLine.
-CandumpLine parse_candump_line(std::string_view line);
+// Parses one line without its end; leading and trailing blanks and colours of a terminal are ignored. Throws
+// BadLogLine.
+RecordedFrame parse_candump_line(std::string_view line);
 
 // Formats a line with microseconds and without line end. `at` must not be negative.
 std::string candump_line(Time at, std::string_view interface, const Frame& frame);
+
+// An identifier of candump: three hexadecimal digits, or eight; the error flag removed.
+struct CandumpId {
+  std::uint32_t id;
+  bool extended, error;
+};
+// Throws BadLogLine.
+CandumpId parse_candump_id(std::string_view digits);
+// A classic frame with these bytes, at most eight: kind, frame and error class of `line`.
+void set_frame(RecordedFrame& line, CandumpId id, std::span<const std::uint8_t> bytes);
 
 }  // namespace kenaf::canopen

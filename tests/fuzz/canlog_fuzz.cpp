@@ -28,8 +28,8 @@ canlog::Log next_log(fuzz::CanInput& input) {
   while (!input.empty()) {
     const std::uint8_t step = input.byte();
     at += std::chrono::microseconds(100) * (step & 0x3f) * (step & 0x40 ? 100 : 1);
-    const auto kind = step & 0x80 ? static_cast<canopen::CandumpKind>(input.byte() % 5) : canopen::CandumpKind::data;
-    const canopen::Frame frame = kind == canopen::CandumpKind::data ? next_frame(input) : canopen::Frame{};
+    const auto kind = step & 0x80 ? static_cast<canopen::FrameKind>(input.byte() % 5) : canopen::FrameKind::data;
+    const canopen::Frame frame = kind == canopen::FrameKind::data ? next_frame(input) : canopen::Frame{};
     log.frames.push_back({log.frames.size() + 1, at, kind, frame});
   }
   return log;

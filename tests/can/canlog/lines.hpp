@@ -27,6 +27,11 @@ struct Line {
 };
 using Lines = std::vector<Line>;
 
+inline Log log_from(const std::string& text) {
+  std::stringstream in(text);
+  return read_log(in);
+}
+
 inline Log log_of(const Lines& lines) {
   std::stringstream text;
   for (const Line& line : lines) text << fmt::format("({:.6f}) vcan0 {}\n", 1e-3 * line.ms, line.frame);

@@ -19,7 +19,7 @@ namespace {
 Log log_of(const candrives::SimulatedBus& wire) {
   Log log{.interface = "vcan0"};
   for (const candrives::LoggedFrame& one : wire.log())
-    log.frames.push_back({log.frames.size() + 1, one.at, canopen::CandumpKind::data, one.frame});
+    log.frames.push_back({log.frames.size() + 1, one.at, canopen::FrameKind::data, one.frame});
   return log;
 }
 
