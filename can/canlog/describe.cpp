@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <numbers>
-#include <span>
 
 #include "can/canlog/describe_sdo.hpp"
+#include "can/canlog/driver_errors.hpp"
+#include "can/canlog/lss.hpp"
 #include "can/canopen/device.hpp"
 #include "can/canopen/drive.hpp"
 #include "can/canopen/emergency.hpp"
@@ -57,13 +57,6 @@ std::string sync_words(const Frame& frame) {
   return frame.length == 0 ? "SYNC" : fmt::format("SYNC {}", frame.data[0]);
 }
 
-std::string heartbeat_words(const Frame& frame, const std::string& name) {
-  const auto heartbeat = canopen::heartbeat_from(frame);
-  if (!heartbeat) return malformed(name + ": heartbeat", frame);
-  if (heartbeat->state == NmtState::boot_up) return name + ": boot-up";
-  return fmt::format("{}: heartbeat, {}", name, describe(heartbeat->state));
-}
-
 std::string emergency_words(const Frame& frame, const std::string& name) {
   const auto emergency = canopen::emergency_from(frame);
   if (!emergency) return malformed(name + ": EMCY", frame);
@@ -112,7 +105,7 @@ std::string control_words(std::uint16_t controlword) {
   return words;
 }
 
-std::string value_words(const canopen::MappedObject& mapped, std::int64_t value, const KnownPdo& known,
+std::string value_words(const canopen::MappedObject& mapped, std::int64_t value, const PdoInForce& pdo,
                         const Network& network) {
   const canopen::ObjectAddress at = mapped.object;
   if (at == object::statusword.object) return status_words(static_cast<std::uint16_t>(value));
@@ -122,11 +115,11 @@ std::string value_words(const canopen::MappedObject& mapped, std::int64_t value,
   if (at == object::dc_link_voltage.object) return fmt::format("supply {:.1f} V", 1e-3 * static_cast<double>(value));
   if (at == object::slope_longitudinal.object) return fmt::format("slope longitudinal {}", value);
   if (at == object::slope_lateral.object) return fmt::format("lateral {}", value);
-  if (known.drive) {
-    if (at == object::position_actual.object) return "position " + position_words(value, *known.drive, network);
-    if (at == object::target_position.object) return "to " + position_words(value, *known.drive, network);
-    if (at == object::velocity_actual.object) return "speed " + velocity_words(value, *known.drive, network);
-    if (at == object::target_velocity.object) return velocity_words(value, *known.drive, network);
+  if (pdo.drive) {
+    if (at == object::position_actual.object) return "position " + position_words(value, *pdo.drive, network);
+    if (at == object::target_position.object) return "to " + position_words(value, *pdo.drive, network);
+    if (at == object::velocity_actual.object) return "speed " + velocity_words(value, *pdo.drive, network);
+    if (at == object::target_velocity.object) return velocity_words(value, *pdo.drive, network);
   }
   return fmt::format("{} = {}", to_string(at), value);
 }
@@ -137,31 +130,41 @@ std::string gyro_words(const Frame& frame, const std::string& name, const canbus
   return fmt::format("{}: yaw rate {} units ({:.4f} rad/s)", name, *rate, *rate / gyro.units_per_radps);
 }
 
-std::string pdo_words(const Frame& frame, const Address& address, const Network& network) {
-  const KnownPdo* known = network.pdo(frame.id);
-  const std::string name = (address.service == Service::receive_pdo ? "command " : "") + network.name(address.node);
-  if (known == nullptr) {
-    return fmt::format("{}: {}PDO{}, not one of this robot's: {}", name,
-                       address.service == Service::receive_pdo ? 'R' : 'T', address.pdo, bytes_of(frame));
-  }
-  if (network.is_gyro(frame.id)) return gyro_words(frame, name, *network.bus().gyro);
-  std::array<std::int64_t, 8> values{};
-  if (!unpack(known->pdo, frame, values)) return malformed(name, frame);
+std::string pdo_words(const Frame& frame, const Address& address, const PdoInForce* pdo, const Network& network) {
+  const bool receive = address.service == Service::receive_pdo;
+  const std::string name = (receive ? "command " : "") + network.name(address.node);
+  const std::string which = fmt::format("{}: {}PDO{}", name, receive ? 'R' : 'T', address.pdo);
+  if (pdo == nullptr) return fmt::format("{}, not one of this robot's: {}", which, bytes_of(frame));
+  if (pdo->is_gyro) return gyro_words(frame, name, *network.bus().gyro);
+  if (pdo->bytes && frame.length != *pdo->bytes) return malformed(name, frame);
+  const std::vector<std::int64_t> values = values_of(*pdo, frame);
+  if (values.empty()) return fmt::format("{}: {}", which, bytes_of(frame));
   std::string words = name + ": ";
-  for (std::size_t i = 0; i < known->pdo.objects.size(); ++i)
-    words += (i == 0 ? "" : ", ") + value_words(known->pdo.objects[i], values[i], *known, network);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    words += (i == 0 ? "" : ", ") + value_words(pdo->objects[i], values[i], *pdo, network);
   return words;
 }
 
 }  // namespace
 
-std::string describe(const Frame& frame, const Network& network) {
-  // By the service that the identifier stands for in CiA 301's predefined connection set.
-  const Address address = address_of(frame.id);
-  const std::string name = network.name(address.node);
+std::string Describer::describe(const LogFrame& logged) {
+  const Address address = bus_.setup().address_of(logged.frame.id);
+  if (logged.kind == canopen::FrameKind::remote) return remote_words(logged.frame, address);
+  if (logged.kind == canopen::FrameKind::error)
+    return fmt::format("CAN controller: {}", driver_error_words(logged.error_class, logged.frame));
+  if (logged.kind != canopen::FrameKind::data) return std::string(canopen::describe(logged.kind));
+  const bool is_sdo = address.service == Service::sdo_request || address.service == Service::sdo_answer;
+  if (is_sdo && logged.frame.length == canopen::kMaxFrameBytes) return sdo_words(logged, address);
+  bus_.on_frame(logged);
+  return data_words(logged.frame, address);
+}
+
+// By the service that the identifier stands for.
+std::string Describer::data_words(const Frame& frame, const Address& address) {
+  const std::string name = network_.name(address.node);
   switch (address.service) {
     case Service::nmt:
-      return nmt_words(frame, network);
+      return nmt_words(frame, network_);
     case Service::sync:
       return sync_words(frame);
     case Service::time_stamp:
@@ -170,22 +173,55 @@ std::string describe(const Frame& frame, const Network& network) {
       return emergency_words(frame, name);
     case Service::transmit_pdo:
     case Service::receive_pdo:
-      return pdo_words(frame, address, network);
+      return pdo_words(frame, address, bus_.setup().pdo(frame.id), network_);
     case Service::sdo_request:
-      return frame.length == 8 ? sdo_request_words(frame, name) : malformed("SDO request to " + name, frame);
+      return malformed("SDO request to " + name, frame);
     case Service::sdo_answer:
-      return frame.length == 8 ? sdo_answer_words(frame, name) : malformed("SDO answer of " + name, frame);
+      return malformed("SDO answer of " + name, frame);
     case Service::heartbeat:
-      return heartbeat_words(frame, name);
+      return heartbeat_words(frame, address);
+    case Service::lss_request:
+    case Service::lss_answer:
+      return lss_words(frame);
     case Service::none:
       break;
   }
   return fmt::format("identifier {:#05x}, which CANopen does not assign: {}", frame.id, bytes_of(frame));
 }
 
-std::string describe(const LogFrame& logged, const Network& network) {
-  if (logged.kind != canopen::FrameKind::data) return std::string(describe(logged.kind));
-  return describe(logged.frame, network);
+std::string Describer::remote_words(const Frame& frame, const Address& address) {
+  const std::string name = network_.name(address.node);
+  if (address.service == Service::heartbeat) {
+    asked_.insert(address.node);
+    return name + ": node guarding, request";
+  }
+  if (address.service == Service::transmit_pdo) return fmt::format("{}: request of TPDO{}", name, address.pdo);
+  return fmt::format("a remote frame, identifier {:#05x}", frame.id);
+}
+
+std::string Describer::heartbeat_words(const Frame& frame, const Address& address) {
+  const std::string name = network_.name(address.node);
+  const bool asked = asked_.erase(address.node) > 0;
+  const auto answer = canopen::error_control_from(frame);
+  if (!answer) return malformed(name + ": heartbeat", frame);
+  if (answer->state == NmtState::boot_up) return name + ": boot-up";
+  if (!asked && !answer->toggle) return fmt::format("{}: heartbeat, {}", name, canopen::describe(answer->state));
+  return fmt::format("{}: node guarding, {}, toggle bit {}", name, canopen::describe(answer->state),
+                     answer->toggle ? 1 : 0);
+}
+
+// What a frame of a block transfer is depends on those before it, and the end gives what was transferred.
+std::string Describer::sdo_words(const LogFrame& logged, const Address& address) {
+  const bool answer = address.service == Service::sdo_answer;
+  const std::string name = network_.name(address.node);
+  const SdoBlock* before = bus_.dialogue().block(address.node);
+  const bool segment = before != nullptr && before->is_segment(logged.frame, answer);
+  bus_.on_frame(logged);
+  if (segment) return block_segment_words(logged.frame, name, answer);
+  const SdoBlock* after = bus_.dialogue().block(address.node);
+  if (after != nullptr && after->is_ended() && after->is_download() != answer)
+    return block_end_words(*after, logged.frame, name);
+  return answer ? sdo_answer_words(logged.frame, name) : sdo_request_words(logged.frame, name);
 }
 
 }  // namespace kenaf::canlog

@@ -25,12 +25,19 @@ std::string initiated(const Frame& frame) {
   return size ? fmt::format("{} bytes in segments", *size) : "in segments";
 }
 
-std::string segment(const Frame& frame) {
-  const auto bytes = sdo::segment_bytes(frame);
+constexpr std::size_t kMostShown = 32;
+
+// Text in quotes, other bytes in hexadecimal; the beginning of long ones.
+std::string content(std::span<const std::uint8_t> all) {
+  const auto bytes = all.first(std::min(all.size(), kMostShown));
+  const std::string_view more = bytes.size() < all.size() ? "..." : "";
   const bool text = std::ranges::all_of(bytes, [](std::uint8_t c) { return c >= 0x20 && c < 0x7f; });
-  const std::string content = text ? fmt::format("\"{}\"", std::string(bytes.begin(), bytes.end()))
-                                   : fmt::format("{:02X}", fmt::join(bytes, " "));
-  return content + (sdo::is_last(frame) ? ", the last" : "");
+  if (text) return fmt::format("\"{}{}\"", std::string(bytes.begin(), bytes.end()), more);
+  return fmt::format("{:02X}{}", fmt::join(bytes, " "), more);
+}
+
+std::string segment(const Frame& frame) {
+  return content(sdo::segment_bytes(frame)) + (sdo::is_last(frame) ? ", the last" : "");
 }
 
 std::string abort_words(const Frame& frame) {
@@ -39,7 +46,43 @@ std::string abort_words(const Frame& frame) {
                      describe(static_cast<canopen::SdoAbort>(code)));
 }
 
+// Bits of a block transfer's frames, but for segments: CiA 301, 7.2.4.3.9 to 7.2.4.3.15.
+constexpr std::uint8_t kBlockSender = 0xc0, kBlockReceiver = 0xa0, kBlockSize = 0x02, kBlockEnd = 0x01;
+
+std::string block_size_words(const Frame& frame) {
+  return (frame.data[0] & kBlockSize) != 0 ? fmt::format("{} bytes", canopen::get_unsigned(frame.data, 4, 4))
+                                           : std::string("size unknown");
+}
+
+// Bits 1 and 0 of a receiver's frame.
+std::string receiver_words(const Frame& frame, const std::string& initiated) {
+  switch (frame.data[0] & 3) {
+    case 0:
+      return initiated;
+    case 1:
+      return "end confirmed";
+    case 2:
+      return fmt::format("up to segment {} taken, next block of {}", frame.data[1], frame.data[2]);
+    default:
+      return "start";
+  }
+}
+
 }  // namespace
+
+std::string block_segment_words(const Frame& frame, const std::string& node, bool by_node) {
+  return fmt::format("SDO block segment {} {} {}: {}{}", frame.data[0] & 0x7f, by_node ? "of" : "to", node,
+                     content(std::span(frame.data).subspan(1)), (frame.data[0] & 0x80) != 0 ? ", the last" : "");
+}
+
+std::string block_end_words(const SdoBlock& block, const Frame& frame, const std::string& node) {
+  const std::uint32_t given = canopen::get_unsigned(frame.data, 1, 2);
+  const std::string crc = !block.has_crc()       ? "no CRC"
+                          : given == block.crc() ? fmt::format("CRC {:#06x}", given)
+                                                 : fmt::format("CRC {:#06x} is wrong: {:#06x}", given, block.crc());
+  return fmt::format("SDO block end {} {}: {} = {}, {} bytes, {}", block.is_download() ? "to" : "of", node,
+                     object_words(block.object()), content(block.value()), block.size(), crc);
+}
 
 std::string sdo_request_words(const Frame& frame, const std::string& node) {
   switch (sdo::specifier(frame)) {
@@ -54,7 +97,16 @@ std::string sdo_request_words(const Frame& frame, const std::string& node) {
     case sdo::kAbort:
       return fmt::format("SDO master, to {}, {}", node, abort_words(frame));
   }
-  return fmt::format("SDO block transfer or unknown request to {} ({:#04x})", node, frame.data[0]);
+  const std::string object = object_words(sdo::address(frame));
+  if (sdo::specifier(frame) == kBlockReceiver) {
+    const std::string read = fmt::format("read {}, in blocks of {}", object, frame.data[4]);
+    return fmt::format("SDO block from {}: {}", node, receiver_words(frame, read));
+  }
+  if (sdo::specifier(frame) == kBlockSender && (frame.data[0] & kBlockEnd) != 0)
+    return fmt::format("SDO block end to {}", node);
+  if (sdo::specifier(frame) == kBlockSender)
+    return fmt::format("SDO block write {} of {}, {}", object, node, block_size_words(frame));
+  return fmt::format("SDO request to {} that CiA 301 does not define ({:#04x})", node, frame.data[0]);
 }
 
 std::string sdo_answer_words(const Frame& frame, const std::string& node) {
@@ -70,7 +122,16 @@ std::string sdo_answer_words(const Frame& frame, const std::string& node) {
     case sdo::kAbort:
       return fmt::format("SDO answer of {}: it {}", node, abort_words(frame));
   }
-  return fmt::format("SDO block transfer or unknown answer of {} ({:#04x})", node, frame.data[0]);
+  const std::string object = object_words(sdo::address(frame));
+  if (sdo::specifier(frame) == kBlockReceiver) {
+    const std::string begun = fmt::format("{}, in blocks of {}", object, frame.data[4]);
+    return fmt::format("SDO block answer of {}: {}", node, receiver_words(frame, begun));
+  }
+  if (sdo::specifier(frame) == kBlockSender && (frame.data[0] & kBlockEnd) != 0)
+    return fmt::format("SDO block end of {}", node);
+  if (sdo::specifier(frame) == kBlockSender)
+    return fmt::format("SDO block answer of {}: {}, {}", node, object, block_size_words(frame));
+  return fmt::format("SDO answer of {} that CiA 301 does not define ({:#04x})", node, frame.data[0]);
 }
 
 }  // namespace kenaf::canlog

@@ -1,37 +1,22 @@
 #include "can/canlog/drive_frames.hpp"
 
-#include <array>
-
 namespace kenaf::canlog {
 
-namespace {
-
-struct Pair {
-  std::size_t drive;
-  std::int64_t first, second;
-};
-
-// Both frames are a 16-bit word and a 32-bit number.
-std::optional<Pair> pair_from(const canopen::Frame& frame, const Network& network, const canopen::MappedObject& word) {
-  const KnownPdo* known = network.pdo(frame.id);
-  if (known == nullptr || !known->drive || known->pdo.objects.front().object != word.object) return std::nullopt;
-  std::array<std::int64_t, 2> values{};
-  if (!unpack(known->pdo, frame, values)) return std::nullopt;
-  return Pair{*known->drive, values[0], values[1]};
+std::optional<DriveCommand> drive_command_from(const canopen::Frame& frame, const PdoInForce* pdo) {
+  if (pdo == nullptr || pdo->transmit || !pdo->drive) return std::nullopt;
+  const auto word = value_of(*pdo, frame, canopen::object::controlword.object);
+  auto target = value_of(*pdo, frame, canopen::object::target_velocity.object);
+  if (!target) target = value_of(*pdo, frame, canopen::object::target_position.object);
+  if (!word || !target) return std::nullopt;
+  return DriveCommand{*pdo->drive, static_cast<std::uint16_t>(*word), static_cast<std::int32_t>(*target)};
 }
 
-}  // namespace
-
-std::optional<DriveCommand> drive_command_from(const canopen::Frame& frame, const Network& network) {
-  const auto pair = pair_from(frame, network, canopen::object::controlword);
-  if (!pair) return std::nullopt;
-  return DriveCommand{pair->drive, static_cast<std::uint16_t>(pair->first), static_cast<std::int32_t>(pair->second)};
-}
-
-std::optional<DriveStatus> drive_status_from(const canopen::Frame& frame, const Network& network) {
-  const auto pair = pair_from(frame, network, canopen::object::statusword);
-  if (!pair) return std::nullopt;
-  return DriveStatus{pair->drive, static_cast<std::uint16_t>(pair->first), static_cast<std::int32_t>(pair->second)};
+std::optional<DriveStatus> drive_status_from(const canopen::Frame& frame, const PdoInForce* pdo) {
+  if (pdo == nullptr || !pdo->transmit || !pdo->drive) return std::nullopt;
+  const auto word = value_of(*pdo, frame, canopen::object::statusword.object);
+  const auto position = value_of(*pdo, frame, canopen::object::position_actual.object);
+  if (!word || !position) return std::nullopt;
+  return DriveStatus{*pdo->drive, static_cast<std::uint16_t>(*word), static_cast<std::int32_t>(*position)};
 }
 
 DriveOrder order_of(std::uint16_t controlword) {

@@ -14,10 +14,10 @@ DriveRules::DriveRules(const Network& network, const CheckOptions& options, Find
   for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].mode = network.bus().drives[i].mode;
 }
 
-void DriveRules::on_frame(const LogFrame& logged) {
+void DriveRules::on_frame(const LogFrame& logged, const PdoInForce* pdo) {
   if (canopen::is_sync(logged.frame)) ++syncs_;
-  if (const auto status = drive_status_from(logged.frame, network_)) on_status(logged, *status);
-  if (const auto command = drive_command_from(logged.frame, network_)) on_command(logged, *command);
+  if (const auto status = drive_status_from(logged.frame, pdo)) on_status(logged, *status);
+  if (const auto command = drive_command_from(logged.frame, pdo)) on_command(logged, *command);
 }
 
 void DriveRules::on_write(const WrittenObject& written) {

@@ -15,7 +15,8 @@ class DriveRules {
   // All arguments must outlive this.
   DriveRules(const Network& network, const CheckOptions& options, Findings& findings);
 
-  void on_frame(const LogFrame& logged);
+  // `pdo` is what the frame's identifier carries, nullptr for nothing.
+  void on_frame(const LogFrame& logged, const PdoInForce* pdo);
   void on_write(const WrittenObject& written);
   void on_restart(canopen::NodeId node);
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <set>
 
+#include "can/canlog/bus_state.hpp"
 #include "can/canlog/drive_frames.hpp"
 #include "can/canlog/loop_span.hpp"
 #include "can/canlog/wire_bits.hpp"
@@ -34,16 +35,19 @@ struct Cycle {
 
 std::vector<Cycle> cycles_of(const Log& log, const Network& network) {
   std::vector<Cycle> cycles;
+  BusState bus(network);
   for (std::size_t i = 0; i < log.frames.size(); ++i) {
     const LogFrame& logged = log.frames[i];
     if (logged.kind != FrameKind::data) continue;
+    bus.on_frame(logged);
     if (canopen::is_sync(logged.frame)) cycles.push_back({logged.at, i, logged.clock_steps});
     if (cycles.empty() || cycles.back().clock_steps != logged.clock_steps) continue;
     Cycle& cycle = cycles.back();
-    const Service service = address_of(logged.frame.id).service;
+    const Service service = bus.setup().address_of(logged.frame.id).service;
     if (service == Service::transmit_pdo) cycle.last_answer = logged.at;
     if (service == Service::receive_pdo) cycle.last_command = logged.at;
-    if (const auto command = drive_command_from(logged.frame, network)) cycle.commanded.insert(command->drive);
+    if (const auto command = drive_command_from(logged.frame, bus.setup().pdo(logged.frame.id)))
+      cycle.commanded.insert(command->drive);
   }
   return cycles;
 }

@@ -13,13 +13,17 @@ namespace kenaf::canlog {
 
 class Findings {
  public:
+  enum class Keep : std::uint8_t { all, none };
+  explicit Findings(Keep keep = Keep::all) : keep_(keep) {}
+
   template <class... Args>
   void add(const LogFrame& at, const Rule& rule, fmt::format_string<Args...> format, Args&&... args) {
-    found_.push_back({at.line, at.at, rule, fmt::format(format, std::forward<Args>(args)...)});
+    if (keep_ == Keep::all) found_.push_back({at.line, at.at, rule, fmt::format(format, std::forward<Args>(args)...)});
   }
   std::vector<Violation> take() { return std::move(found_); }
 
  private:
+  Keep keep_;
   std::vector<Violation> found_;
 };
 

@@ -1,5 +1,7 @@
 #include "can/canlog/frame_rules.hpp"
 
+#include "can/canlog/driver_errors.hpp"
+
 namespace kenaf::canlog {
 namespace {
 
@@ -22,6 +24,9 @@ std::string_view name_of(Service service) {
     case Service::transmit_pdo:
     case Service::receive_pdo:
       return "a PDO";
+    case Service::lss_request:
+    case Service::lss_answer:
+      return "LSS";
     case Service::none:
       break;
   }
@@ -31,33 +36,54 @@ std::string_view name_of(Service service) {
 }  // namespace
 
 bool FrameRules::check(const LogFrame& logged, const Address& address) {
-  return check_kind(logged) && check_identifier(logged, address) && check_length(logged, address) &&
-         check_content(logged, address);
+  if (logged.kind != canopen::FrameKind::data) {
+    check_other_kind(logged, address);
+    return false;
+  }
+  return check_identifier(logged, address) && check_length(logged, address) && check_content(logged, address);
 }
 
-bool FrameRules::check_kind(const LogFrame& logged) {
-  if (logged.kind == canopen::FrameKind::data) return true;
-  // driver messages about the wire are not frames on it
-  if (logged.kind != canopen::FrameKind::error && strange_kinds_.insert(logged.kind).second)
+void FrameRules::check_other_kind(const LogFrame& logged, const Address& address) {
+  if (logged.kind == canopen::FrameKind::error) {
+    if (is_bus_off(logged.error_class)) {
+      findings_.add(logged, rule::bus_off, "the recorder's CAN controller is off the bus: it sends and hears nothing");
+    }
+  } else if (logged.kind == canopen::FrameKind::remote) {
+    check_remote(logged, address);
+  } else if (strange_kinds_.insert(logged.kind).second) {
     findings_.add(logged, rule::identifier, "{} is on the bus", describe(logged.kind));
-  return false;
+  }
+}
+
+// CiA 301 has remote frames for node guarding, and to ask for transmit PDOs that do not forbid it.
+void FrameRules::check_remote(const LogFrame& logged, const Address& address) {
+  const PdoInForce* pdo = setup_.pdo(logged.frame.id);
+  std::string words = strangeness(logged.frame.id, address);
+  if (words.empty() && address.service == Service::transmit_pdo && pdo != nullptr && pdo->no_remote)
+    words = fmt::format("TPDO{} of {}, which forbids them", address.pdo, network_.name(address.node));
+  if (words.empty() && address.service != Service::heartbeat && address.service != Service::transmit_pdo)
+    words = fmt::format("which is {}", name_of(address.service));
+  if (words.empty() || !strange_requests_.insert(logged.frame.id).second) return;
+  findings_.add(logged, rule::identifier, "a remote frame asks for identifier {:#05x}, {}", logged.frame.id, words);
+}
+
+// Why the identifier is not to be expected; empty: it is.
+std::string FrameRules::strangeness(std::uint16_t cob_id, const Address& address) const {
+  if (address.service == Service::none) return "which CANopen does not assign";
+  if (address.node != 0 && !network_.is_known(address.node))
+    return fmt::format("of node {}, which the robot's description does not have", address.node);
+  const bool is_pdo = address.service == Service::transmit_pdo || address.service == Service::receive_pdo;
+  if (!is_pdo || setup_.pdo(cob_id) != nullptr) return {};
+  return fmt::format("{}PDO{} of {}, which {}", address.service == Service::receive_pdo ? 'R' : 'T', address.pdo,
+                     network_.name(address.node),
+                     setup_.is_given_up(cob_id) ? "was moved away or made invalid" : "was not configured");
 }
 
 bool FrameRules::check_identifier(const LogFrame& logged, const Address& address) {
-  const std::uint16_t id = logged.frame.id;
-  std::string words;
-  const bool is_pdo = address.service == Service::transmit_pdo || address.service == Service::receive_pdo;
-  if (address.service == Service::none) {
-    words = "which CANopen does not assign";
-  } else if (address.node != 0 && !network_.is_known(address.node)) {
-    words = fmt::format("of node {}, which the robot's description does not have", address.node);
-  } else if (is_pdo && network_.pdo(id) == nullptr && !setup_.mapped_bytes(id)) {
-    words = fmt::format("{}PDO{} of {}, which was not configured", address.service == Service::receive_pdo ? 'R' : 'T',
-                        address.pdo, network_.name(address.node));
-  }
+  const std::string words = strangeness(logged.frame.id, address);
   if (words.empty()) return true;
-  if (strange_ids_.insert(id).second)
-    findings_.add(logged, rule::identifier, "identifier {:#05x} is on the bus, {}", id, words);
+  if (strange_ids_.insert(logged.frame.id).second)
+    findings_.add(logged, rule::identifier, "identifier {:#05x} is on the bus, {}", logged.frame.id, words);
   return false;
 }
 
@@ -82,12 +108,14 @@ bool FrameRules::check_length(const LogFrame& logged, const Address& address) {
     case Service::sdo_answer:
     case Service::sdo_request:
     case Service::emergency:
+    case Service::lss_request:
+    case Service::lss_answer:
       return expect(8, 8);
     case Service::transmit_pdo:
     case Service::receive_pdo: {
-      const auto mapped = setup_.mapped_bytes(logged.frame.id);
-      if (mapped) return expect(*mapped, *mapped);
-      if (!network_.is_gyro(logged.frame.id)) return true;
+      const PdoInForce* pdo = setup_.pdo(logged.frame.id);
+      if (pdo != nullptr && pdo->bytes) return expect(*pdo->bytes, *pdo->bytes);
+      if (pdo == nullptr || !pdo->is_gyro) return true;
       // the rest of the frame is manufacturer-specific
       const canbus::GyroOnBus& gyro = *network_.bus().gyro;
       return expect((gyro.first_bit + gyro.bits + 7u) / 8, canopen::kMaxFrameBytes);
@@ -105,7 +133,7 @@ bool FrameRules::check_content(const LogFrame& logged, const Address& address) {
                   frame.data[1]);
     return false;
   }
-  if (address.service == Service::heartbeat && !canopen::heartbeat_from(frame)) {
+  if (address.service == Service::heartbeat && !canopen::error_control_from(frame)) {
     findings_.add(logged, rule::content, "a heartbeat of {} reports state {:#04x}, which CiA 301 does not define",
                   network_.name(address.node), frame.data[0]);
     return false;

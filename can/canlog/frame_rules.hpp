@@ -1,4 +1,4 @@
-// The rules that can be checked on a single frame: identifier, length, content.
+// The rules that can be checked on a single frame: identifier, length, content, and messages of the driver.
 #pragma once
 
 #include <set>
@@ -18,7 +18,9 @@ class FrameRules {
   bool check(const LogFrame& logged, const Address& address);
 
  private:
-  bool check_kind(const LogFrame& logged);
+  void check_other_kind(const LogFrame& logged, const Address& address);
+  void check_remote(const LogFrame& logged, const Address& address);
+  std::string strangeness(std::uint16_t cob_id, const Address& address) const;
   bool check_identifier(const LogFrame& logged, const Address& address);
   bool check_length(const LogFrame& logged, const Address& address);
   bool check_content(const LogFrame& logged, const Address& address);
@@ -27,7 +29,7 @@ class FrameRules {
   const PdoSetup& setup_;
   Findings& findings_;
   // each reported once: an unexpected sender repeats itself
-  std::set<std::uint16_t> strange_ids_;
+  std::set<std::uint16_t> strange_ids_, strange_requests_;
   std::set<canopen::FrameKind> strange_kinds_;
 };
 

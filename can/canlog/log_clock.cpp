@@ -11,11 +11,11 @@ using canopen::Time;
 namespace {
 
 constexpr Time kOutOfOrder = std::chrono::milliseconds(1);
-constexpr Time kEnd = std::chrono::seconds(9'000'000'000);  // sums beyond do not fit in 64-bit nanoseconds
+constexpr Time kLastTime = std::chrono::seconds(9'000'000'000);  // sums beyond do not fit in 64-bit nanoseconds
 constexpr std::size_t kLeastShare = 4;
 
 Time sum_of(Time a, Time b) {
-  return b > kEnd - a ? kEnd : a + b;
+  return b > kLastTime - a ? kLastTime : a + b;
 }
 
 }  // namespace

@@ -3,10 +3,8 @@
 #include <array>
 #include <optional>
 
+#include "can/canlog/bus_state.hpp"
 #include "can/canlog/drive_frames.hpp"
-#include "can/canlog/findings.hpp"
-#include "can/canlog/node_states.hpp"
-#include "can/canlog/sdo_dialogue.hpp"
 
 namespace kenaf::canlog {
 
@@ -43,10 +41,8 @@ bool is_motion(const DriveCommand& command, const Followed& drive) {
 }  // namespace
 
 std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
-  // SDO writes are tracked only because they may change a drive's mode; their findings are ignored here.
-  const CheckOptions options;
-  Findings ignored;
-  SdoDialogue dialogue(network, options, ignored);
+  // SDO writes may change a drive's mode, and what its PDOs contain.
+  BusState bus(network);
   std::array<Followed, canbus::kDriveCount> drives{};
   for (std::size_t i = 0; i < drives.size(); ++i) drives[i].mode = network.bus().drives[i].mode;
 
@@ -56,15 +52,15 @@ std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
   for (std::size_t i = 0; i < log.frames.size(); ++i) {
     const LogFrame& logged = log.frames[i];
     if (logged.kind != canopen::FrameKind::data) continue;
-    const Address address = address_of(logged.frame.id);
 
     // Tracks the drives' modes and states, on which the meaning of a command depends.
-    if (const auto written = dialogue.on_frame(logged, address)) {
+    if (const auto written = bus.on_frame(logged)) {
       const auto drive = network.drive_of(written->node);
       if (drive && written->object == canopen::object::mode.object)
         drives[*drive].mode = static_cast<DriveMode>(written->number());
     }
-    if (const auto status = drive_status_from(logged.frame, network))
+    const PdoInForce* pdo = bus.setup().pdo(logged.frame.id);
+    if (const auto status = drive_status_from(logged.frame, pdo))
       drives[status->drive].state = canopen::power_state_of(status->statusword);
 
     // Any NMT order but start ends the control loop, and with it the span.
@@ -72,7 +68,7 @@ std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
       within = false;
 
     // The rest concerns commands to drives.
-    const auto command = drive_command_from(logged.frame, network);
+    const auto command = drive_command_from(logged.frame, pdo);
     if (!command) continue;
     Followed& drive = drives[command->drive];
     if (is_motion(*command, drive)) {

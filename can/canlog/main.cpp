@@ -20,6 +20,7 @@
 #include "can/canlog/describe.hpp"
 #include "can/canlog/figures.hpp"
 #include "can/canlog/log.hpp"
+#include "can/canlog/print_limit.hpp"
 #include "can/canlog/rules.hpp"
 
 namespace {
@@ -31,14 +32,20 @@ constexpr int kBroken = 1, kBadInput = 2;
 struct Options {
   std::string robot = "kenaf", log = "-", interface;
   double bit_rate = 500'000, sync_window_ms = 0, answer_ms = 0;
-  bool check = false, figures = false;
+  bool check = false, figures = false, all = false;
 };
 
 canlog::Log load_log(const Options& options) {
-  if (options.log == "-") return canlog::read_log(std::cin, options.interface);
-  std::ifstream in(options.log);
-  if (!in) throw std::runtime_error(options.log + ": cannot be opened");
-  return canlog::read_log(in, options.interface);
+  std::ifstream file;
+  if (options.log != "-") {
+    file.open(options.log);
+    if (!file) throw std::runtime_error(options.log + ": cannot be opened");
+  }
+  try {
+    return canlog::read_log(options.log == "-" ? std::cin : file, options.interface);
+  } catch (const std::runtime_error& refused) {
+    throw std::runtime_error(options.log + ": " + refused.what());
+  }
 }
 
 double seconds(canopen::Time time) {
@@ -51,9 +58,10 @@ canopen::Time from_ms(double ms) {
 
 // Times are relative to the first frame; a log may have none.
 void print_words(const canlog::Log& log, const canlog::Network& network) {
+  canlog::Describer describer(network);
   for (const canlog::LogFrame& logged : log.frames) {
     if (log.has_times) fmt::print("{:12.6f}  ", seconds(logged.at - log.frames.front().at));
-    fmt::print("{}\n", describe(logged, network));
+    fmt::print("{}\n", describer.describe(logged));
   }
 }
 
@@ -63,11 +71,15 @@ bool print_violations(const Options& options, const canlog::Log& log, const canl
   if (options.answer_ms > 0) check.sdo_answer = from_ms(options.answer_ms);
   const std::vector<canlog::Violation> found = check_rules(log, network, check);
   std::set<std::string_view> broken;
+  canlog::PrintLimit limit(options.all);
   for (const canlog::Violation& one : found) {
+    broken.insert(one.rule.name);
+    if (!limit.allows(one.rule.name)) continue;
     fmt::print("{}:{}: {:.6f} s: {}: {}\n", options.log, one.line, seconds(one.at - log.frames.front().at),
                one.rule.name, one.words);
-    broken.insert(one.rule.name);
   }
+  for (const auto& [rule, count] : limit.left_out())
+    fmt::print("{}: {}: {} more violations (--all prints each)\n", options.log, rule, count);
   for (const canlog::Rule* rule : canlog::all_rules()) {
     if (broken.contains(rule->name)) fmt::print("rule {} ({}): {}\n", rule->name, rule->source, rule->words);
   }
@@ -81,15 +93,19 @@ void finish_output() {
     throw std::runtime_error("standard output cannot be written; is its disk full?");
 }
 
-int run(const Options& options) {
-  const canlog::Network network(canbus::load_robot_bus(options.robot));
-  const canlog::Log log = load_log(options);
-  for (const canlog::BadLine& bad : log.bad_lines) fmt::print(stderr, "{}:{}: {}\n", options.log, bad.line, bad.words);
+// What a reader must know of the log itself, on standard error.
+void print_remarks(const Options& options, const canlog::Log& log) {
+  static constexpr std::string_view kUnreadable = "lines that cannot be read", kSteps = "steps of the clock";
+  canlog::PrintLimit limit(options.all);
+  for (const canlog::BadLine& bad : log.bad_lines) {
+    if (limit.allows(kUnreadable)) fmt::print(stderr, "{}:{}: {}\n", options.log, bad.line, bad.words);
+  }
   if (!log.has_times) fmt::print(stderr, "{}: the log has no times\n", options.log);
   if (log.summed_times) {
     fmt::print(stderr, "{}: the times are intervals (`candump -td`): they are summed up\n", options.log);
   }
   for (const canlog::ClockStep& step : log.clock_steps) {
+    if (!limit.allows(kSteps)) continue;
     fmt::print(stderr, "{}:{}: the recorder's clock steps back by {:.6f} s: the log's time stands still over it\n",
                options.log, step.line, seconds(step.back));
   }
@@ -97,6 +113,14 @@ int run(const Options& options) {
     fmt::print(stderr, "{}: {} lines are not from {} and were left out (--interface chooses another)\n", options.log,
                log.other_interfaces, log.interface);
   }
+  for (const auto& [kind, count] : limit.left_out())
+    fmt::print(stderr, "{}: {} more {} (--all prints each)\n", options.log, count, kind);
+}
+
+int run(const Options& options) {
+  const canlog::Network network(canbus::load_robot_bus(options.robot));
+  const canlog::Log log = load_log(options);
+  print_remarks(options, log);
   if (log.frames.empty()) throw std::runtime_error(options.log + ": contains no frame; is it a log of a CAN bus?");
   if (!options.check && !options.figures) print_words(log, network);
   if (options.figures) fmt::print("{}", to_text(figures_of(log, network), options.bit_rate));
@@ -109,10 +133,10 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Decodes a CAN bus log (candump -L), checks it against the rules of CANopen and reports statistics.",
-               "kenaf-canlog");
+  CLI::App app("Decodes a CAN bus log, checks it against the rules of CANopen and reports statistics.", "kenaf-canlog");
   app.set_version_flag("--version", KENAF_VERSION);
-  app.add_option("LOG", options.log, "a log of `candump -L`; - is standard input")->capture_default_str();
+  app.add_option("LOG", options.log, "a log of candump, PCAN-View, CANoe or python-can; - is standard input")
+      ->capture_default_str();
   app.add_option("--robot", options.robot, "the robot description with the devices on the bus, a name or a TOML file")
       ->capture_default_str();
   app.add_option("--interface", options.interface,
@@ -124,6 +148,7 @@ int main(int argc, char** argv) {
   app.add_option("--answer", options.answer_ms,
                  "--check: ms in which SDO requests must be answered (default: the description's answer_s)")
       ->check(CLI::PositiveNumber);
+  app.add_flag("--all", options.all, "prints every error, not 20 of a kind at most");
   app.add_flag("--figures", options.figures, "load, SYNC's jitter, times of answers and commands");
   app.add_option("--bitrate", options.bit_rate, "--figures: of the bus, in bit/s")
       ->check(CLI::Range(10'000.0, 1'000'000.0))

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "can/canlog/lss.hpp"
+
 namespace kenaf::canlog {
 
 using canopen::NodeId;
@@ -32,6 +34,8 @@ Address address_of(std::uint16_t cob_id) {
   if (cob_id == canopen::kNmtCommandId) return {Service::nmt, 0, 0};
   if (cob_id == canopen::kSyncId) return {Service::sync, 0, 0};
   if (cob_id == kTimeId) return {Service::time_stamp, 0, 0};
+  if (cob_id == kLssRequestId) return {Service::lss_request, 0, 0};
+  if (cob_id == kLssAnswerId) return {Service::lss_answer, 0, 0};
   for (const Range& range : kRanges) {
     if (cob_id > range.base && cob_id <= range.base + canopen::kMaxNode)
       return {range.service, static_cast<NodeId>(cob_id - range.base), range.pdo};

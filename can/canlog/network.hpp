@@ -22,14 +22,16 @@ enum class Service : std::uint8_t {
   receive_pdo,   // to a node
   sdo_answer,    // by a node
   sdo_request,   // to a node
-  heartbeat,
+  heartbeat,     // of a node, or guarding of it
+  lss_request,   // to nodes that are being set up: CiA 305
+  lss_answer,
   none,  // no identifier of the predefined connection set
 };
 
 struct Address {
   Service service;
   canopen::NodeId node;  // 0: no single node
-  std::uint8_t pdo;      // 1 to 4, for a PDO
+  std::uint16_t pdo;     // 1 to 512, for a PDO
 };
 Address address_of(std::uint16_t cob_id);
 

@@ -37,6 +37,8 @@ void NodeStates::on_frame(const LogFrame& logged, const Address& address) {
       return check_service(logged, address);
     case Service::sync:
     case Service::time_stamp:
+    case Service::lss_request:
+    case Service::lss_answer:
     case Service::none:
       return;
   }
@@ -75,7 +77,7 @@ void NodeStates::on_order(const LogFrame& logged) {
 }
 
 void NodeStates::on_heartbeat(const LogFrame& logged, NodeId id) {
-  const auto heartbeat = canopen::heartbeat_from(logged.frame);
+  const auto heartbeat = canopen::error_control_from(logged.frame);
   if (!heartbeat || network_.is_master(id)) return;
   Node& node = nodes_[id];
   if (heartbeat->state == NmtState::boot_up) return enter(node, NmtState::pre_operational, logged.at);

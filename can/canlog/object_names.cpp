@@ -34,6 +34,11 @@ constexpr Name kNames[] = {
     {0x1018, "identity"},
     {0x1019, "SYNC counter overflow"},
     {0x1029, "error behaviour"},
+    // CiA 302-3, program download
+    {0x1f50, "program data"},
+    {0x1f51, "program control"},
+    {0x1f56, "program identification"},
+    {0x1f57, "flash status"},
     // CiA 410, of an inclinometer
     {0x6000, "slope resolution"},
     {0x6010, "slope, longitudinal"},

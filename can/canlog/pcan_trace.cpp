@@ -48,7 +48,8 @@ std::vector<std::uint8_t> last_bytes(std::span<const std::string_view> words, st
 
 // Four bytes, the highest first.
 void set_status(RecordedFrame& line, std::span<const std::uint8_t> bytes) {
-  const std::uint32_t status = static_cast<std::uint32_t>(bytes[0]) << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3];
+  std::uint32_t status = 0;
+  for (const std::uint8_t byte : bytes) status = status << 8 | byte;
   DriverError error;
   error.bus_off = (status & kBusOff) != 0;
   error.passive = !error.bus_off && (status & kBusHeavy) != 0;

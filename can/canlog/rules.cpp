@@ -6,6 +6,7 @@
 #include "can/canlog/drive_rules.hpp"
 #include "can/canlog/findings.hpp"
 #include "can/canlog/frame_rules.hpp"
+#include "can/canlog/guarding_rule.hpp"
 #include "can/canlog/heartbeat_rule.hpp"
 #include "can/canlog/loop_span.hpp"
 #include "can/canlog/node_states.hpp"
@@ -27,10 +28,13 @@ class Checker {
         dialogue_(network, options, findings_),
         sync_(network, options, states_, setup_, findings_),
         heartbeat_(network, findings_),
+        guarding_(network, findings_),
         drives_(network, options, findings_) {}
 
   void on_frame(const LogFrame& logged) {
-    const Address address = address_of(logged.frame.id);
+    const Address address = setup_.address_of(logged.frame.id);
+    if (logged.kind == canopen::FrameKind::remote && address.service == Service::heartbeat)
+      guarding_.on_request(address.node);
     if (!frames_.check(logged, address)) return;
     states_.on_frame(logged, address);
     for (const auto& [node, name] : network_.names()) {
@@ -45,7 +49,8 @@ class Checker {
     }
     sync_.on_frame(logged, address);
     heartbeat_.on_frame(logged, address);
-    drives_.on_frame(logged);
+    guarding_.on_frame(logged, address);
+    drives_.on_frame(logged, setup_.pdo(logged.frame.id));
   }
 
   void check_loop(const Log& log, const LoopSpan& span) {
@@ -72,6 +77,7 @@ class Checker {
     dialogue_.on_restart(node);
     sync_.on_restart(node);
     heartbeat_.on_restart(node);
+    guarding_.on_restart(node);
     drives_.on_restart(node);
   }
   void on_start(const LogFrame& logged) {
@@ -90,16 +96,18 @@ class Checker {
   SdoDialogue dialogue_;
   SyncRules sync_;
   HeartbeatRule heartbeat_;
+  GuardingRule guarding_;
   DriveRules drives_;
 };
 
 }  // namespace
 
 std::span<const Rule* const> all_rules() {
-  static constexpr std::array kAll{&rule::identifier,  &rule::length,       &rule::content,          &rule::boot_up,
-                                   &rule::nmt_state,   &rule::sdo_dialogue, &rule::sdo_time,         &rule::sdo_in_loop,
-                                   &rule::pdo_setup,   &rule::sync_pdo,     &rule::master_heartbeat, &rule::controlword,
-                                   &rule::fault_reset, &rule::statusword,   &rule::set_point,        &rule::target};
+  static constexpr std::array kAll{&rule::identifier, &rule::length,           &rule::content,     &rule::node_guarding,
+                                   &rule::bus_off,    &rule::boot_up,          &rule::nmt_state,   &rule::sdo_dialogue,
+                                   &rule::sdo_block,  &rule::sdo_time,         &rule::sdo_in_loop, &rule::pdo_setup,
+                                   &rule::sync_pdo,   &rule::master_heartbeat, &rule::controlword, &rule::fault_reset,
+                                   &rule::statusword, &rule::set_point,        &rule::target};
   return kAll;
 }
 

@@ -1,7 +1,7 @@
 // Checks a recorded bus against the standards' rules. docs/can-tools.md lists them.
 //
 // Only evidence in the log is judged: for a log that begins in the middle, a node's state is not judged before it was
-// on the bus.
+// on the bus, nor a transfer or a set-up that began before the log.
 #pragma once
 
 #include <optional>
@@ -24,15 +24,22 @@ struct Rule {
 namespace rule {
 inline constexpr Rule identifier{
     "identifier", "CiA 301, 7.3.3 to 7.3.5",
-    "data frames with the identifiers of the predefined connection set, of nodes that are known"},
-    length{"length", "CiA 301, 7.2",
-           "each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO and EMCY 8, PDOs as they are mapped"},
+    "frames with the identifiers of the predefined connection set, of nodes and PDOs that are known; remote "
+    "frames as requests of guarding and of PDOs only"},
+    length{
+        "length", "CiA 301, 7.2",
+        "each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO, EMCY and LSS 8, PDOs as they are mapped"},
     content{"content", "CiA 301, 7.2.8", "commands and states are defined by NMT"},
+    node_guarding{"node-guarding", "CiA 301, 7.2.8.3.2.1",
+                  "the toggle bit of a guarded node alternates from answer to answer, beginning with 0"},
+    bus_off{"bus-off", "ISO 11898-1, fault confinement", "the recorder's controller stays on the bus"},
     boot_up{"boot-up", "CiA 301, 7.3.2.2.1", "a node that was reset sends boot-up before anything else"},
     nmt_state{"nmt-state", "CiA 301, 7.3.2.3",
               "PDOs from and to operational nodes alone; SDO and EMCY not from or to stopped ones"},
     sdo_dialogue{"sdo-dialogue", "CiA 301, 7.2.4.3",
                  "one transfer at a time; each answer is the request's: object, kind, toggle bit"},
+    sdo_block{"sdo-block", "CiA 301, 7.2.4.3.8 to 7.2.4.3.16",
+              "segments of a block are numbered from 1 and acknowledged; size and CRC are the data's"},
     sdo_time{"sdo-time", "CiA 301, 7.2.4", "each request is answered in time"},
     sdo_in_loop{"sdo-in-loop", "this project: docs/can-robot.md", "no SDO between the first motion and the last"},
     pdo_setup{"pdo-setup", "CiA 301, 7.5.2.36 and 7.5.2.38",

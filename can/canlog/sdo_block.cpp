@@ -14,7 +14,8 @@ namespace {
 // Bits 7 to 5; the client's and the server's meanings are exchanged between the two directions.
 constexpr std::uint8_t kFromSender = 0xc0, kFromReceiver = 0xa0;
 // From the sender, bit 0: initiate or end. From the receiver, bits 1 and 0.
-constexpr std::uint8_t kEnd = 0x01, kSubMask = 0x03, kReceiverEnd = 0x01, kAcknowledge = 0x02, kStart = 0x03;
+constexpr std::uint8_t kEndStep = 0x01, kSubMask = 0x03, kReceiverEnd = 0x01, kAcknowledgeStep = 0x02,
+                       kStartStep = 0x03;
 constexpr std::uint8_t kCrcSupported = 0x04, kSizeGiven = 0x02, kLastSegment = 0x80, kNumberMask = 0x7f;
 constexpr std::uint8_t kMaxBlock = 127;
 constexpr std::uint16_t kBlockPolynomial = 0x1021;
@@ -40,7 +41,7 @@ std::uint16_t block_crc(std::span<const std::uint8_t> bytes, std::uint16_t crc) 
 }
 
 bool SdoBlock::begins(const Frame& request) {
-  if (sdo::specifier(request) == kFromSender) return (request.data[0] & kEnd) == 0;
+  if (sdo::specifier(request) == kFromSender) return (request.data[0] & kEndStep) == 0;
   return is_receivers(request, 0);
 }
 
@@ -55,7 +56,7 @@ SdoBlock::SdoBlock(const Frame& request)
   }
 }
 
-bool SdoBlock::server_is_due() const {
+bool SdoBlock::waits_for_server() const {
   switch (phase_) {
     case Phase::initiate:
       return true;
@@ -72,34 +73,30 @@ bool SdoBlock::server_is_due() const {
   return download_;
 }
 
-bool SdoBlock::waits_for_server() const {
-  return server_is_due();
-}
-
 bool SdoBlock::is_segment(const Frame& frame, bool from_server) const {
   return phase_ == Phase::segments && from_server != download_ && (frame.data[0] & kNumberMask) != 0;
 }
 
 std::string SdoBlock::on_frame(const Frame& frame, bool from_server) {
   // A receiver may acknowledge before the last segment of a block, where it misses one.
-  const bool early = phase_ == Phase::segments && from_server == download_ && is_receivers(frame, kAcknowledge);
+  const bool early = phase_ == Phase::segments && from_server == download_ && is_receivers(frame, kAcknowledgeStep);
   if (early) return on_acknowledge(frame);
-  if (from_server == server_is_due() && phase_ != Phase::done) {
+  if (from_server == waits_for_server() && phase_ != Phase::done) {
     switch (phase_) {
       case Phase::initiate:
         return on_initiated(frame);
       case Phase::start:
-        if (!is_receivers(frame, kStart)) break;
+        if (!is_receivers(frame, kStartStep)) break;
         phase_ = Phase::segments;
         return {};
       case Phase::segments:
         if (is_segment(frame, from_server)) return on_segment(frame);
         break;
       case Phase::acknowledge:
-        if (is_receivers(frame, kAcknowledge)) return on_acknowledge(frame);
+        if (is_receivers(frame, kAcknowledgeStep)) return on_acknowledge(frame);
         break;
       case Phase::end:
-        if (sdo::specifier(frame) == kFromSender && (frame.data[0] & kEnd) != 0) return on_end(frame);
+        if (sdo::specifier(frame) == kFromSender && (frame.data[0] & kEndStep) != 0) return on_end(frame);
         break;
       case Phase::end_answer:
         if (!is_receivers(frame, kReceiverEnd)) break;
@@ -109,12 +106,13 @@ std::string SdoBlock::on_frame(const Frame& frame, bool from_server) {
         break;
     }
   }
+  lost_ = true;
   return fmt::format("a frame {:#04x} does not continue the block transfer of {}", frame.data[0], to_string(object_));
 }
 
 std::string SdoBlock::on_initiated(const Frame& answer) {
   const bool fits =
-      download_ ? is_receivers(answer, 0) : sdo::specifier(answer) == kFromSender && (answer.data[0] & kEnd) == 0;
+      download_ ? is_receivers(answer, 0) : sdo::specifier(answer) == kFromSender && (answer.data[0] & kEndStep) == 0;
   if (!fits) return fmt::format("an answer {:#04x} to the beginning of a block transfer", answer.data[0]);
   if (sdo::address(answer) != object_)
     return fmt::format("an answer for {}, asked for {}", to_string(sdo::address(answer)), to_string(object_));

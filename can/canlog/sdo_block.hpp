@@ -30,6 +30,10 @@ class SdoBlock {
   canopen::ObjectAddress object() const { return object_; }
   bool is_download() const { return download_; }
   bool is_done() const { return phase_ == Phase::done; }
+  // The sender has ended it; the receiver has not confirmed yet.
+  bool is_ended() const { return phase_ == Phase::end_answer; }
+  // A frame came that is none of a block transfer: it is not known what follows.
+  bool is_lost() const { return lost_; }
   bool is_initiating() const { return phase_ == Phase::initiate; }
   // The node, not the client, has to send next.
   bool waits_for_server() const;
@@ -42,11 +46,11 @@ class SdoBlock {
   // What has been acknowledged; complete after the end. The first canopen::kMaxSdoBytes of it.
   const canopen::ObjectBytes& value() const { return value_; }
   std::uint64_t size() const { return bytes_; }
+  bool has_crc() const { return with_crc_; }  // both sides compute it
   std::uint16_t crc() const { return crc_; }
 
  private:
   enum class Phase : std::uint8_t { initiate, start, segments, acknowledge, end, end_answer, done };
-  bool server_is_due() const;
   std::string on_initiated(const canopen::Frame& answer);
   std::string on_segment(const canopen::Frame& frame);
   std::string on_acknowledge(const canopen::Frame& frame);
@@ -60,7 +64,7 @@ class SdoBlock {
   std::optional<std::uint32_t> announced_{};
   Phase phase_ = Phase::initiate;
   std::uint8_t block_size_ = 127, last_number_ = 0;
-  bool last_sent_ = false;
+  bool last_sent_ = false, lost_ = false;
   canopen::ObjectBytes unacknowledged_{};  // the segments of this block that came in order
   canopen::ObjectBytes held_{};            // the last acknowledged segment: the end may shorten it
   canopen::ObjectBytes value_{};

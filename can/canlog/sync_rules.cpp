@@ -25,33 +25,36 @@ void SyncRules::on_write(const WrittenObject& written) {
 }
 
 void SyncRules::on_restart(canopen::NodeId node) {
-  std::erase_if(sent_, [&](const auto& entry) { return address_of(entry.first).node == node; });
+  std::erase_if(sent_, [&](const auto& entry) { return entry.second.node == node; });
 }
 
 std::optional<unsigned> SyncRules::each(std::uint16_t cob_id) const {
-  const auto transmission = setup_.transmission(cob_id);
+  const PdoInForce* pdo = setup_.pdo(cob_id);
+  if (pdo == nullptr || pdo->is_gyro) return std::nullopt;
+  const auto transmission = pdo->transmission;
   if (!transmission || *transmission == 0 || *transmission > kMaxSynchronous) return std::nullopt;
   return *transmission;
 }
 
 std::string SyncRules::name(std::uint16_t cob_id) const {
-  const Address address = address_of(cob_id);
+  const Address address = setup_.address_of(cob_id);
   return fmt::format("TPDO{} of {}", address.pdo, network_.name(address.node));
 }
 
 void SyncRules::on_sync(const LogFrame& logged) {
-  for (const auto& [id, known] : network_.pdos()) {
-    if (known.pdo.direction != canopen::PdoDirection::transmit || network_.is_gyro(id)) continue;
-    if (!states_.was_operational(known.node, logged.at)) {
+  for (const auto& [id, pdo] : setup_.in_force()) {
+    if (!pdo.transmit || pdo.is_gyro) continue;
+    if (!states_.was_operational(pdo.node, logged.at)) {
       sent_.erase(id);
       continue;
     }
     Sent& sent = sent_[id];
+    sent.node = pdo.node;
     const auto n = each(id);
     if (n && sent.syncs >= *n) {
       findings_.add(*sync_, rule::sync_pdo, "{}, due at each {}SYNC, does not come at this one", name(id),
                     *n == 1 ? "" : fmt::format("{}th ", *n));
-      sent = {};
+      sent = {.node = pdo.node};
     }
     ++sent.syncs;
   }
@@ -70,7 +73,7 @@ void SyncRules::on_pdo(const LogFrame& logged) {
   }
   if (sent.in_phase && sent.syncs < *n)
     findings_.add(logged, rule::sync_pdo, "{} comes after {} SYNCs, not {}", name(id), sent.syncs, *n);
-  sent = {.syncs = 0, .in_phase = true};
+  sent = {.node = sent.node, .in_phase = true};
   const auto window = options_.sync_window ? options_.sync_window : written_window_;
   if (window && logged.at - sync_->at > *window) {
     findings_.add(logged, rule::sync_pdo, "{} comes {:.2f} ms after SYNC, beyond the window of {:.2f} ms", name(id),

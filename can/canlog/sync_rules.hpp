@@ -24,6 +24,7 @@ class SyncRules {
 
  private:
   struct Sent {
+    canopen::NodeId node = 0;
     unsigned syncs = 0;     // since the last transmission, or since it could send
     bool in_phase = false;  // the SYNCs at which it sends are known
   };

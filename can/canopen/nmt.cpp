@@ -66,6 +66,16 @@ std::optional<Heartbeat> heartbeat_from(const Frame& frame) {
   return Heartbeat{static_cast<NodeId>(frame.id - kHeartbeatId), static_cast<NmtState>(frame.data[0])};
 }
 
+std::optional<ErrorControl> error_control_from(const Frame& frame) {
+  constexpr std::uint8_t kGuardToggle = 0x80;
+  Frame without_toggle = frame;
+  without_toggle.data[0] &= static_cast<std::uint8_t>(~kGuardToggle);
+  const auto heartbeat = heartbeat_from(without_toggle);
+  const bool toggle = (frame.data[0] & kGuardToggle) != 0;
+  if (!heartbeat || (toggle && heartbeat->state == NmtState::boot_up)) return std::nullopt;
+  return ErrorControl{heartbeat->node, heartbeat->state, toggle};
+}
+
 bool is_sync(const Frame& frame) {
   return frame.id == kSyncId && frame.length <= 1;
 }

@@ -48,6 +48,15 @@ Frame encode(const Heartbeat& heartbeat);
 // nullopt: another identifier, not one byte, or a state not in CiA 301 (bit 7 is node guarding's toggle bit, 0 here).
 std::optional<Heartbeat> heartbeat_from(const Frame& frame);
 
+// A heartbeat, or an answer of node guarding (7.2.8.3.2.1): the same byte, in which the latter's toggle bit is bit 7.
+struct ErrorControl {
+  NodeId node;
+  NmtState state;
+  bool toggle;  // false for a heartbeat and for boot-up
+};
+// nullopt: another identifier, not one byte, or a state not in CiA 301.
+std::optional<ErrorControl> error_control_from(const Frame& frame);
+
 // A SYNC without counter, as of a SYNC producer whose object 0x1019 is 0.
 inline constexpr Frame kSync{.id = kSyncId};
 // A SYNC with a counter byte counts too.

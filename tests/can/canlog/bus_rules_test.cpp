@@ -18,7 +18,7 @@ TEST_CASE("Identifiers: those of the predefined connection set, of nodes and PDO
   CHECK(broken({{0, "780#00"}, {1, "709#05"}, {2, "401#00"}}) ==
         Broken{"1: identifier", "2: identifier", "3: identifier"});
   CHECK(broken({{0, "780#00"}, {1, "780#00"}}) == Broken{"1: identifier"});
-  CHECK(broken({{0, "00000181#00"}, {1, "701#R1"}, {2, "181##000"}}) ==
+  CHECK(broken({{0, "00000181#00"}, {1, "601#R8"}, {2, "181##000"}}) ==
         Broken{"1: identifier", "2: identifier", "3: identifier"});
   CHECK(broken({{0, "20000004#000C000000000000"}}).empty());  // of the driver, not of the bus
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "can/canlog/describe.hpp"
 #include "can/canlog/log.hpp"
 #include "can/canlog/network.hpp"
 #include "can/canlog/rules.hpp"
@@ -38,6 +39,18 @@ inline Log log_of(const Lines& lines) {
   Log log = read_log(text);
   if (!log.bad_lines.empty()) throw std::runtime_error("a test's own line: " + log.bad_lines.front().words);
   return log;
+}
+
+// The description of each line.
+inline std::vector<std::string> words_of(const Lines& lines) {
+  Describer describer(easy_network());
+  std::vector<std::string> words;
+  for (const LogFrame& frame : log_of(lines).frames) words.push_back(describer.describe(frame));
+  return words;
+}
+
+inline std::string words_of_frame(std::string_view frame) {
+  return words_of({{0, frame}}).front();
 }
 
 // "line: rule" of each violation.

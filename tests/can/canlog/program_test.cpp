@@ -55,9 +55,42 @@ TEST_CASE("kenaf-canlog --check names what is broken, and ends with 1 where some
   CHECK(
       ended.text ==
       "LOG:5: 0.011000 s: length: SYNC has 2 bytes, not 0 to 1\n"
-      "rule length (CiA 301, 7.2): each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO and EMCY 8, PDOs "
-      "as they are mapped\n"
-      "4 frames, 16 rules, violations: 1\n");
+      "rule length (CiA 301, 7.2): each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO, EMCY and LSS 8, "
+      "PDOs as they are mapped\n"
+      "4 frames, 19 rules, violations: 1\n");
+}
+
+TEST_CASE("kenaf-canlog prints 20 errors of a kind, and counts the others") {
+  // 22 of SYNC's length and 23 lines that are none
+  std::string lines = kLog;
+  for (int i = 0; i < 22; ++i) lines += "(1.02) can0 080#0102\n";
+  for (int i = 0; i < 23; ++i) lines += "nonsense\n";
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  const std::string few = run(lines, {"--check"}).text, all = run(lines, {"--check", "--all"}).text;
+  CHECK(count(few, "SYNC has 2 bytes") == 20);
+  CHECK(count(few, "\"nonsense\" is not") == 20);
+  CHECK_THAT(few, Catch::Contains("LOG: length: 2 more violations") &&
+                      Catch::Contains("LOG: 3 more lines that cannot be read") && Catch::Contains("violations: 22"));
+  CHECK(count(all, "SYNC has 2 bytes") == 22);
+  CHECK(count(all, "\"nonsense\" is not") == 23);
+  CHECK(count(all, " more ") == 0);
+}
+
+TEST_CASE("kenaf-canlog names a step of the clock, intervals, missing times and a format that it does not read") {
+  CHECK_THAT(run("(10.0) can0 080#\n(3.5) can0 080#\n").text,
+             Catch::Contains("LOG:2: the recorder's clock steps back by 6.500000 s"));
+  CHECK_THAT(run("(000.000000) can0 080#\n(000.010000) can0 080#\n(000.010000) can0 080#\n").text,
+             Catch::Contains("intervals (`candump -td`)") && Catch::Contains("    0.020000  SYNC"));
+  const Ended no_times = run("  can0  080   [0]\n");
+  CHECK_THAT(no_times.text, Catch::Contains("has no times") && Catch::Contains("\nSYNC\n"));
+  const Ended binary = run("LOGG\x90");
+  CHECK(binary.status == 2);
+  CHECK_THAT(binary.text,
+             Catch::Contains("LOG") && Catch::Contains("a binary log of Vector (.blf), which is not read"));
 }
 
 TEST_CASE("kenaf-canlog passes over bad lines by name, and over another bus") {
