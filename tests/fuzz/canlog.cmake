@@ -1,1 +1,5 @@
 kenaf_fuzzer(canlog_fuzz SOURCE canlog_fuzz.cpp LIBRARIES kenaf_canlog kenaf_candrives)
+kenaf_fuzzer(pcan_trace_fuzz SOURCE pcan_trace_fuzz.cpp LIBRARIES kenaf_canlog)
+kenaf_fuzzer(python_can_csv_fuzz SOURCE python_can_csv_fuzz.cpp LIBRARIES kenaf_canlog)
+kenaf_fuzzer(recorded_log_fuzz SOURCE recorded_log_fuzz.cpp LIBRARIES kenaf_canlog kenaf_candrives)
+kenaf_fuzzer(vector_ascii_fuzz SOURCE vector_ascii_fuzz.cpp LIBRARIES kenaf_canlog)

@@ -29,8 +29,15 @@ canlog::Log next_log(fuzz::CanInput& input) {
     const std::uint8_t step = input.byte();
     at += std::chrono::microseconds(100) * (step & 0x3f) * (step & 0x40 ? 100 : 1);
     const auto kind = step & 0x80 ? static_cast<canopen::FrameKind>(input.byte() % 5) : canopen::FrameKind::data;
-    const canopen::Frame frame = kind == canopen::FrameKind::data ? next_frame(input) : canopen::Frame{};
-    log.frames.push_back({log.frames.size() + 1, at, kind, frame});
+    canopen::Frame frame{};
+    std::uint32_t error_class = 0;
+    if (kind == canopen::FrameKind::data || kind == canopen::FrameKind::remote) frame = next_frame(input);
+    if (kind == canopen::FrameKind::remote) frame.data = {};
+    if (kind == canopen::FrameKind::error) {
+      frame = input.frame(0, 8);
+      error_class = input.word();
+    }
+    log.frames.push_back({log.frames.size() + 1, at, kind, frame, error_class, log.clock_steps.size()});
   }
   return log;
 }
@@ -41,7 +48,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const canlog::Network network(candrives::easy_robot());
   fuzz::CanInput input{{data, size}};
   const canlog::Log log = next_log(input);
-  for (const canlog::LogFrame& logged : log.frames) require(!describe(logged, network).empty());
+  canlog::Describer describer(network);
+  for (const canlog::LogFrame& logged : log.frames) require(!describer.describe(logged).empty());
   std::size_t last = 1;
   for (const canlog::Violation& one : check_rules(log, network)) {
     require(one.line >= last && one.line <= log.frames.size() && !one.words.empty());

@@ -1,0 +1,16 @@
+// Any text is a PCAN trace, or refused in words; what was read are frames.
+#include "can/canlog/pcan_trace.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "tests/fuzz/recorded_lines.hpp"
+
+using namespace kenaf;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  canlog::PcanTrace trace;
+  fuzz::read_lines(text, [&](std::string_view line) { return trace.read(line); });
+  return 0;
+}
