@@ -158,7 +158,10 @@ RecordedFrame VectorAscii::read_fd(std::string_view rest) const {
   text::take_word(rest);
   const std::uint32_t flags = text::hexadecimal(text::take_word(rest)).value_or(kFlagFd);
   if ((flags & kFlagFd) != 0) return {.interface = line.interface, .kind = FrameKind::fd};
-  if ((flags & kFlagRemote) != 0 && line.kind == FrameKind::data) line.kind = FrameKind::remote;
+  if ((flags & kFlagRemote) != 0 && line.kind == FrameKind::data) {
+    line.kind = FrameKind::remote;
+    line.frame.data = {};
+  }
   return line;
 }
 

@@ -125,6 +125,10 @@ TEST_CASE("Errors and CAN FD in Vector's ASCII logs") {
   CHECK(log.frames[3].kind == FrameKind::extended);
   CHECK(log.frames[4].frame == frame_of(0x701, {0x7f}));  // no flag 0x1000: a classic frame
   CHECK(log.frames[5].kind == FrameKind::fd);
+  // flag 0x10: a remote frame, which has no bytes whatever the line says
+  const Log remote = log_from("base hex\n 1.0 CANFD 1 Rx 701 0 0 1 1 7f 130000 130 10 0 0 0 0 0\n");
+  CHECK(remote.frames.at(0).kind == FrameKind::remote);
+  CHECK(remote.frames.at(0).frame == canopen::Frame{.id = 0x701, .length = 1});
   CHECK_THAT(log_from("base hex\n 1.0 1 EngineData Rx d 1 00\n").bad_lines.at(0).words,
              Catch::Contains("symbolic names are not read"));
 }
