@@ -213,9 +213,9 @@ TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
         {"--manoeuvre empty.toml --out data", "empty.toml:1:1: manoeuvre is missing"},
         {"--manoeuvre drop --robot kenoff --out data",
          "no such robot; give the path of a file that ends "
-         "in .toml, or one of husky, jackal, kenaf,"},
+         "in .toml, or one of basicskidrobot, husky, jackal, kenaf,"},
         {"--manoeuvre drop --robot none.toml --out data", "none.toml: cannot be read: No such file"},
-        {"--manoeuvre drop --robot ./ --out data", "./: cannot be read: Is a directory"},
+        {"--manoeuvre drop --robot ./ --out data", "./: is a folder, device, pipe or socket, not a file"},
         {"--manoeuvre drop --robot empty.toml --out data", "empty.toml:1:1: usarsim_class is missing"},
         {"--manoeuvre drop --world nowhere --out data", "world \"nowhere\": no such world"},
         {"--manoeuvre drop --effect mass:scale=9 --out data",
