@@ -69,7 +69,7 @@ class ContactSolver {
   // Group by group.
   std::vector<JointRows> joints_;
   std::vector<Contact> contacts_;
-  bool some_shear_ = false;  // of contacts_
+  bool some_shear_ = false;                // of contacts_
   std::vector<std::size_t> contacts_end_;  // of each group
 };
 

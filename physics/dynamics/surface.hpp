@@ -36,7 +36,7 @@ struct Surface {
   double axis_y = 1;           // the belt turns about (0, axis_y, 0) of its body, 1 or -1
   double lug_height_m = 0;
   double shear_deformation_m = 0;  // K of shear.hpp, of a belt
-  double compliance_scale = 1;  // of the compliance of the ground under it
+  double compliance_scale = 1;     // of the compliance of the ground under it
   double damping_scale = 1;
 };
 
