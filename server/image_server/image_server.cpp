@@ -83,13 +83,13 @@ void ImageServer::Implementation::welcome(tcp::socket socket) {
 
 // Closes the reader that has been idle longest; false: none has been so for long enough.
 bool ImageServer::Implementation::make_room() {
-  using Clock = std::chrono::steady_clock;
+  using Steady = std::chrono::steady_clock;
   const auto idle_since = [](const ImageReader* reader) {
-    return reader->idle_since().value_or(Clock::time_point::max());
+    return reader->idle_since().value_or(Steady::time_point::max());
   };
   const auto idlest = std::ranges::min_element(desk.readers, {}, idle_since);
-  const auto idle = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(desk.limits.idle_s));
-  if (idlest == desk.readers.end() || idle_since(*idlest) > Clock::now() - idle) return false;
+  const auto idle = std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(desk.limits.idle_s));
+  if (idlest == desk.readers.end() || idle_since(*idlest) > Steady::now() - idle) return false;
   (*idlest)->give_way();
   return true;
 }
