@@ -18,7 +18,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (const auto line = lines.next()) {
     if (protocol::usarsim::parse_message(*line, message) != protocol::usarsim::ParseError::none) continue;
     if (!transform.take(message)) continue;
-    const protocol::relay::State state{1, 0, false, false, transform.frame().state};
+    const relayd::WorldFrame& frame = transform.frame();
+    const protocol::relay::State state{1, 0, false, false, frame.not_at_start, frame.state};
     std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
     protocol::relay::Datagram again;
     if (protocol::relay::decode({bytes.data(), protocol::relay::encode(state, bytes)}, again) !=
