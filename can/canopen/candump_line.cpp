@@ -96,7 +96,8 @@ RecordedFrame parse_plain(std::string_view text) {
   if (stamp.stamp == Stamp::none && !on_screen)
     throw BadLogLine(fmt::format("{} is not a time such as (1436509052.249713)", quoted(first)));
   if (line.interface.empty() || line.interface.size() > kMaxInterface)
-    throw BadLogLine(fmt::format("{} is not the name of an interface: 1 to 15 characters", quoted(line.interface)));
+    throw BadLogLine(
+        fmt::format("{} is not the name of an interface: 1 to 15 characters", text::quoted(line.interface)));
   if (on_screen) {
     parse_candump_screen(rest, line);
     return line;
