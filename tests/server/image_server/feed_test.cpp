@@ -48,8 +48,7 @@ TEST_CASE("Frames are of whole thirtieths of robot time, counted, and published 
   const double speed = GENERATE(1.0, 0.0, 3.0);
   CameraWorld world("flat", speed);
   Robot robot(world, "R1");
-  FramePtr frame = next_frame(world.feed, "R1/Camera");
-  CHECK(frame->number == 1);
+  FramePtr frame = next_frame(world.feed, "R1/Camera");  // not always number 1: this thread may have looked late
   CHECK(frame->robot == "R1");
   CHECK(frame->camera == "Camera");
   CHECK(frame->picture.width == 640);
@@ -109,6 +108,7 @@ TEST_CASE("Where time stands still the first picture comes, and then stays") {
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
   const FramePtr frame = next_frame(world.feed, "");
+  CHECK(frame->number == 1);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   CHECK(world.feed.look("").frame == frame);
   robot.ask("CONTROL {Type Step} {Time 0.1}");  // three thirtieths
