@@ -15,7 +15,8 @@ using Column = std::span<const double>;
 constexpr double kStep_s = 0.05, kShortestPhase_s = 0.1;
 constexpr double kBeltMoves_mps = 0.01;
 constexpr double kTurns = 0.3;              // difference of the belts' speeds over the larger one
-constexpr double kSettling_s = 0.3;         // after a command has changed
+constexpr double kSettling_s = 0.3;         // after a command has changed; longer until the belts obey a stop
+constexpr double kRolls = 0.1;              // of the speed before a stop: what is faster still slows down
 constexpr double kFlipperMoves_rad = 0.02;  // from its command
 constexpr double kInclined_rad = 0.06;      // relative to the pitch at the start
 constexpr double kTips_radps = 0.6;
@@ -69,13 +70,25 @@ Signals signals_of(const Observation& observation, std::size_t count) {
   const auto obeyed = [&](double asked_mps, std::string_view track) {
     return !(std::abs(grid(track).front()) < std::abs(asked_mps) / 2);
   };
+  // a stop lasts until both belts are measured at rest, or as good as
+  const std::vector<double> left_is = grid("track_left_mps"), right_is = grid("track_right_mps");
+  double speed_before_mps = 0;
+  const auto rolls = [&](std::size_t i) {
+    const double faster_mps = std::max(std::abs(or_zero(left_is[i])), std::abs(or_zero(right_is[i])));
+    return faster_mps > std::max(kBeltMoves_mps, kRolls * speed_before_mps);
+  };
+  bool slows_down = false;
   std::size_t last_change =
       obeyed(s.left_mps[0], "track_left_mps") && obeyed(s.right_mps[0], "track_right_mps") ? count : 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0 &&
         std::abs(s.left_mps[i] - s.left_mps[i - 1]) + std::abs(s.right_mps[i] - s.right_mps[i - 1]) > kBeltMoves_mps)
       last_change = i;
-    s.changed[i] = last_change < count && static_cast<double>(i - last_change) * kStep_s <= kSettling_s;
+    const bool settling = last_change < count && static_cast<double>(i - last_change) * kStep_s <= kSettling_s;
+    const double asked_mps = std::max(std::abs(or_zero(s.left_mps[i])), std::abs(or_zero(s.right_mps[i])));
+    if (asked_mps >= kBeltMoves_mps) speed_before_mps = asked_mps;
+    slows_down = asked_mps < kBeltMoves_mps && (settling || slows_down) && rolls(i);
+    s.changed[i] = settling || slows_down;
   }
   for (const std::string_view flipper : robot::kFlipperNames) {
     const auto asked = grid(fmt::format("cmd_flipper_{}_rad", flipper));

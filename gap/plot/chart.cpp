@@ -229,6 +229,10 @@ svg.chart .bar.real { fill: var(--real); }
 svg.chart .ring.sim { stroke: var(--sim); }
 svg.chart .ring.real { stroke: var(--real); }
 svg.chart .ring.third { stroke: var(--third); }
+svg.chart .arrow.sim { fill: var(--sim); }
+svg.chart .arrow.real { fill: var(--real); }
+svg.chart .arrow.third { fill: var(--third); }
+svg.chart .arrow.whisker-end { fill: var(--ink); }
 svg.chart .mark { fill-opacity: 1; }
 svg.chart .shade { fill: var(--shade); stroke: var(--frame); stroke-width: 0.6; }
 svg.chart text.dark { fill: var(--ink); }

@@ -14,17 +14,24 @@ namespace kenaf::gap::plot {
 namespace {
 
 constexpr double kTitle_px = 26, kLegend_px = 22, kGuide_px = 16, kRow_px = 24, kRowsBottom_px = 44;
-constexpr double kRadius_px = 5, kBarHalf_px = 7, kWhiskerEnd_px = 4;
+constexpr double kRadius_px = 5, kBarHalf_px = 7, kWhiskerEnd_px = 4, kArrow_px = 9;
+constexpr double kRowLabelGap_px = 10, kRowNoteGap_px = 12, kRowEdge_px = 14;
 constexpr double kPixelsPerTick = 70;
 
-// Maps values to pixels; values beyond the range go to its edge.
+// Maps values to pixels; values beyond the range go to its edge, and beyond() says to which.
 struct Scale {
   Range range;  // of the logarithms on a logarithmic scale
   bool logarithmic;
   double width_px;
-  double operator()(double value) const {
+  double share(double value) const {
     if (logarithmic) value = value > 0 ? std::log10(value) : -std::numeric_limits<double>::infinity();
-    return std::clamp((value - range.low) / range.span(), 0.0, 1.0) * width_px;
+    return (value - range.low) / range.span();
+  }
+  double operator()(double value) const { return std::clamp(share(value), 0.0, 1.0) * width_px; }
+  // -1: left of the range, 1: right of it, 0: in it
+  int beyond(double value) const {
+    const double at = share(value), rounding = 1e-9;
+    return at < -rounding ? -1 : at > 1 + rounding ? 1 : 0;
   }
 };
 
@@ -83,9 +90,40 @@ std::string shape_at(Shape shape, Ink ink, double x, double y, double from_x) {
   return {};
 }
 
-std::string legend_of(const RowChart& chart) {
+// A head of an arrow at the axis's edge: what it stands for lies farther out.
+std::string arrow_at(std::string_view classes, double x, double y, int side, std::string_view hint) {
+  return fmt::format("<path class=\"{}\" d=\"M{:.1f} {:.1f}l{} -{}v{}z\">{}</path>", classes, x, y, -side * kArrow_px,
+                     kArrow_px / 2, kArrow_px, hint.empty() ? "" : fmt::format("<title>{}</title>", escaped(hint)));
+}
+
+std::string mark_of(const RowMark& mark, const Scale& scale, double y) {
+  const double x = scale(mark.value);
+  const int side = scale.beyond(mark.value);
   std::string svg;
-  double x = chart.label_px;
+  // a bar ends at the edge with an arrow; a point is nothing but the arrow, as it is not at the edge
+  if (mark.shape == Shape::bar || side == 0) svg += shape_at(mark.shape, mark.ink, x, y, scale(0));
+  if (side != 0)
+    svg += arrow_at(fmt::format("arrow {}", ink_class(mark.ink)), x, y, side,
+                    fmt::format("{:.4g}, beyond the axis", mark.value));
+  return svg;
+}
+
+std::string whisker_of(const Range& interval, const Scale& scale, double y) {
+  const double low = scale(interval.low), high = scale(interval.high);
+  std::string svg = fmt::format("<path class=\"frame whisker\" d=\"M{:.1f} {:.1f}H{:.1f}", low, y, high);
+  for (const double end : {interval.low, interval.high})
+    if (scale.beyond(end) == 0)
+      svg += fmt::format("M{:.1f} {:.1f}v{}", scale(end), y - kWhiskerEnd_px, 2 * kWhiskerEnd_px);
+  svg += "\"/>";
+  for (const double end : {interval.low, interval.high})
+    if (const int side = scale.beyond(end); side != 0)
+      svg += arrow_at("arrow whisker-end", scale(end), y, side, fmt::format("to {:.4g}, beyond the axis", end));
+  return svg;
+}
+
+std::string legend_of(const RowChart& chart, double left_px) {
+  std::string svg;
+  double x = left_px;
   for (const RowLegend& entry : chart.legend) {
     svg += shape_at(entry.shape, entry.ink, x + 8, kTitle_px + 10, x - 2);
     svg += text_at(x + 20, kTitle_px + 14, entry.text);
@@ -94,8 +132,22 @@ std::string legend_of(const RowChart& chart) {
   return svg;
 }
 
-std::string row_of(const Row& row, const Scale& scale, double y) {
-  std::string svg = text_at(-10, y + 4.5, row.label, "end dark");
+// Labels and notes get the room that they need, up to half and a quarter of the chart.
+struct Room {
+  double label_px, note_px;
+};
+Room room_of(const RowChart& chart) {
+  double label_px = chart.label_px, note_px = chart.note_px;
+  for (const Row& row : chart.rows) {
+    label_px = std::max(label_px, text_width_px(row.label) + 2 * kRowLabelGap_px);
+    if (!row.note.empty()) note_px = std::max(note_px, text_width_px(row.note) + kRowNoteGap_px);
+  }
+  note_px = std::min(note_px, std::max(chart.note_px, chart.width_px / 4));
+  return {std::min(label_px, std::max(chart.label_px, chart.width_px / 2)), note_px};
+}
+
+std::string row_of(const Row& row, const Scale& scale, const Room& room, double y) {
+  std::string svg = text_at(-kRowLabelGap_px, y + 4.5, end_of(row.label, room.label_px - kRowLabelGap_px), "end dark");
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const RowMark& mark : row.marks)
     if (std::isfinite(mark.value)) low = std::min(low, scale(mark.value)), high = std::max(high, scale(mark.value));
@@ -103,13 +155,10 @@ std::string row_of(const Row& row, const Scale& scale, double y) {
     svg += fmt::format("<path class=\"line faint solid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", low, y, high);
   for (const RowMark& mark : row.marks) {
     if (!std::isfinite(mark.value)) continue;
-    svg += shape_at(mark.shape, mark.ink, scale(mark.value), y, scale(0));
-    if (mark.interval)
-      svg += fmt::format(
-          "<path class=\"frame whisker\" d=\"M{0:.1f} {1:.1f}H{2:.1f}M{0:.1f} {3:.1f}v{4}M{2:.1f} {3:.1f}v{4}\"/>",
-          scale(mark.interval->low), y, scale(mark.interval->high), y - kWhiskerEnd_px, 2 * kWhiskerEnd_px);
+    svg += mark_of(mark, scale, y);
+    if (mark.interval) svg += whisker_of(*mark.interval, scale, y);
   }
-  return svg + text_at(scale.width_px + 12, y + 4.5, row.note, "") + "\n";
+  return svg + text_at(scale.width_px + kRowNoteGap_px, y + 4.5, row.note, "") + "\n";
 }
 
 }  // namespace
@@ -118,13 +167,15 @@ std::string to_svg(const RowChart& chart) {
   const double top_px =
       kTitle_px + (chart.legend.empty() ? 0 : kLegend_px) + (chart.guides.empty() ? 0 : kGuide_px) + 4;
   const double rows_px = kRow_px * static_cast<double>(chart.rows.size());
-  const Scale scale{range_of(chart), chart.logarithmic, chart.width_px - chart.label_px - chart.note_px - 14};
+  const Room room = room_of(chart);
+  const Scale scale{range_of(chart), chart.logarithmic, chart.width_px - room.label_px - room.note_px - kRowEdge_px};
   if (chart.rows.empty())
     return svg_begin(chart.title, chart.width_px, kTitle_px + 24) + text_at(0, kTitle_px + 12, "nothing to show") +
            "</svg>\n";
-  std::string svg = svg_begin(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px) + legend_of(chart);
+  std::string svg =
+      svg_begin(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px) + legend_of(chart, room.label_px);
   const auto out = std::back_inserter(svg);
-  fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, top_px);
+  fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", room.label_px, top_px);
 
   // Grid with tick labels, axis label and guides.
   const Ticks ticks = ticks_of(scale);
@@ -138,13 +189,15 @@ std::string to_svg(const RowChart& chart) {
   svg += text_at(scale.width_px / 2, rows_px + 36, chart.x_label, "middle");
   for (const auto& [value, words] : chart.guides) {
     fmt::format_to(out, "<path class=\"line faint dashed\" d=\"M{:.1f} -4v{:.1f}\"/>", scale(value), rows_px + 4);
-    svg += text_at(scale(value), -7, words, scale(value) > 0.8 * scale.width_px ? "end" : "middle");
+    // words are centred on their guide, or moved so far that they stay in the chart
+    const double half_px = text_width_px(words) / 2, right_px = scale.width_px + kRowEdge_px + room.note_px;
+    svg += text_at(std::max(half_px - room.label_px, std::min(scale(value), right_px - half_px)), -7, words, "middle");
   }
   svg += "\n";
 
   // The rows, then the frame over them.
   for (std::size_t i = 0; i < chart.rows.size(); ++i)
-    svg += row_of(chart.rows[i], scale, kRow_px * (static_cast<double>(i) + 0.5));
+    svg += row_of(chart.rows[i], scale, room, kRow_px * (static_cast<double>(i) + 0.5));
   fmt::format_to(out, "<path class=\"frame\" d=\"M0 0h{0:.1f}v{1:.1f}h-{0:.1f}z\"/>\n</g>\n", scale.width_px, rows_px);
   return svg + "</svg>\n";
 }

@@ -39,9 +39,10 @@ struct RowChart {
   std::vector<Row> rows;
   std::vector<RowLegend> legend;
   std::vector<std::pair<double, std::string>> guides;  // dashed vertical lines with their labels
-  std::optional<Range> view;  // empty: all values and intervals; values beyond are drawn at its edge
-  bool logarithmic = false;   // values that are not positive are drawn at the left edge
-  double label_px = 190, note_px = 0, width_px = 1060;
+  std::optional<Range> view;           // empty: all values and intervals; what lies beyond is an arrow at its edge
+  bool logarithmic = false;            // values that are not positive lie beyond the left edge
+  double label_px = 190, note_px = 0;  // more if they need it, up to half and a quarter of the width
+  double width_px = 1060;
 };
 
 // Returns one <svg> element, for the style sheet of chart.hpp. Without rows it says "nothing to show".

@@ -1,6 +1,9 @@
 // The program kenaf-draw: pictures of the size asked for, and clear words where the input is wrong.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "formats/runs/dataset.hpp"
 #include "tests/support/outcome.hpp"
@@ -45,7 +48,7 @@ TEST_CASE("A run becomes a PNG of the default size, and its end error is printed
   const test::Outcome outcome = kenaf_draw(folder, "square.csv --out square.png");
   CHECK(outcome.error.empty());
   CHECK(outcome.status == 0);
-  CHECK(outcome.out == "square: 2.000 m in 2.0 s, end 3.0 mm and 0.0° from the start\n");
+  CHECK(outcome.out == "square: 2.000 m in 2.0 s; end 3.0 mm and 0.0° from the start\n");
   check_png(read_file(folder / "square.png"), 1920, 1200);
   CHECK_FALSE(std::filesystem::exists(folder / "square.png.part"));
 }
@@ -86,6 +89,19 @@ TEST_CASE("Degenerate runs are drawn: one row, no movement, a turn on the spot")
       CHECK(outcome.status == 0);
     }
   }
+}
+
+TEST_CASE("A turn on the spot is said as a turn, and its noise is no way driven") {
+  // 720 degrees to the left about the origin in 20 s; the position alternates by 2 mm: 4 m in all, from row to row.
+  std::string rows = "t_s,x_m,y_m,yaw_rad\n";
+  for (int i = 0; i <= 2000; ++i) {
+    const double yaw_rad = std::remainder(i * 4 * std::numbers::pi / 2000, 2 * std::numbers::pi);
+    rows += fmt::format("{:.2f},{},0,{:.6f}\n", i * 0.01, i % 2 == 0 ? 0.001 : -0.001, yaw_rad);
+  }
+  const TemporaryFolder folder;
+  write_file(folder / "turn.csv", rows);
+  CHECK(kenaf_draw(folder, "turn.csv --out a.png").out ==
+        "turn: 0.0 mm in 20.0 s, turned 720.0° left; end 0.0 mm and 0.0° from the start\n");
 }
 
 TEST_CASE("A run of a dataset is drawn with the dataset's robot and world") {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/draw/path_length.hpp"
+
 namespace kenaf::draw {
 
 namespace {
@@ -45,9 +47,15 @@ double DrivenPath::duration_s() const {
 }
 
 double DrivenPath::length_m() const {
-  double length = 0;
-  for (std::size_t i = 1; i < postures.size(); ++i) length += (postures[i].X_WB.p - postures[i - 1].X_WB.p).norm();
-  return length;
+  std::vector<Eigen::Vector3d> p_WB;
+  for (const Posture& posture : postures) p_WB.push_back(posture.X_WB.p);
+  return path_length_m(p_WB);
+}
+
+Turns DrivenPath::turns() const {
+  std::vector<double> yaw_rad;
+  for (const Posture& posture : postures) yaw_rad.push_back(yaw_of(posture));
+  return turns_of(yaw_rad);
 }
 
 double DrivenPath::start_to_end_m() const {

@@ -9,6 +9,7 @@
 #include "formats/runs/run_file.hpp"
 #include "physics/pose.hpp"
 #include "physics/robot_description.hpp"
+#include "tools/draw/turns.hpp"
 
 namespace kenaf::draw {
 
@@ -23,7 +24,8 @@ struct DrivenPath {
   std::vector<Posture> postures;  // at least one
 
   double duration_s() const;
-  double length_m() const;        // driven, in space
+  double length_m() const;        // driven, in space; path_length_m() keeps noise out
+  Turns turns() const;            // of the yaw; turns_of() keeps noise out
   double start_to_end_m() const;  // in the ground plane
   double turned_rad() const;      // yaw at the end minus yaw at the start, in [-pi, pi]
   bool climbs() const;            // whether height or pitch change enough for a side view

@@ -14,6 +14,15 @@ std::string distance_text(double metres) {
   return metres < 1 ? fmt::format("{:.1f} mm", metres * 1000) : fmt::format("{:.3f} m", metres);
 }
 
+// "turned 359.8° left", "turned 90.0° left, 89.7° right", or nothing where the robot did not turn.
+std::string turns_text(const Turns& turns) {
+  const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+  std::string words;
+  if (turns.left_rad > 0) words += fmt::format("{:.1f}° left", degrees(turns.left_rad));
+  if (turns.right_rad > 0) words += fmt::format("{}{:.1f}° right", words.empty() ? "" : ", ", degrees(turns.right_rad));
+  return words.empty() ? words : ", turned " + words;
+}
+
 // Title, robot and world, then a line for each run. Returns the y of its lower end.
 double draw_header(const Canvas& canvas, const Scene& scene, const std::string& title) {
   double y = kMargin + 20;
@@ -75,8 +84,8 @@ void draw_legend(const Canvas& canvas, const Scene& scene) {
 
 std::string summary(const Scene& scene, std::size_t index) {
   const DrivenPath& path = scene.paths[index];
-  std::string words = fmt::format("{} in {:.1f} s, end {} and {:.1f}° from the start", distance_text(path.length_m()),
-                                  path.duration_s(), distance_text(path.start_to_end_m()),
+  std::string words = fmt::format("{} in {:.1f} s{}; end {} and {:.1f}° from the start", distance_text(path.length_m()),
+                                  path.duration_s(), turns_text(path.turns()), distance_text(path.start_to_end_m()),
                                   std::abs(path.turned_rad()) * 180 / std::numbers::pi);
   if (index > 0) {
     const Eigen::Vector3d away = path.postures.back().X_WB.p - scene.paths.front().postures.back().X_WB.p;

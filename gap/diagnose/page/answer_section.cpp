@@ -44,8 +44,8 @@ std::string stages_at_a_glance(const Diagnosis& d) {
   for (std::size_t s = 0; s < d.stages.size(); ++s) {
     // the bar: length by the stage's share of the gap, split into explained and left
     const StageDiagnosis& stage = d.stages[s];
-    const double share = share_of_gap(d, s), gone = explained(stage);
     const bool has_gap = stage.decision.verdict != Verdict::none;
+    const double share = has_gap ? share_of_gap(d, s) : 0, gone = explained(stage);
     const double gone_part = std::isnan(gone) ? 0 : share * gone;
     const NamesFound names = names_found(stage);
 

@@ -107,8 +107,9 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
 
   // phases and how the gap is counted in them
   html += paragraph(fmt::format("Phases are detected in the data. The gap is measured in intervals of {} s of each "
-                                "channel, so a shorter phase includes part of its neighbours' gap.",
-                                d.options.stretch_s),
+                                "channel; an interval across several phases is divided between them by the residuals "
+                                "in its spans of {} s.",
+                                d.options.stretch_s, d.options.span_s),
                     "soft");
 
   // per stage: time before and after, the table of phases, and maps for the stage with most of the gap

@@ -80,6 +80,28 @@ TEST_CASE("One belt faster than the other by a third is a turn, backwards is a c
   CHECK(tracks(0, 0) == "stand");
 }
 
+TEST_CASE("A robot that rolls on after a stop does not stand yet") {
+  // told to stop at 2 s; from 0.4 m/s at 0.2 m/s2 the belts are at a tenth of it 1.8 s later
+  const auto asked = [](double t_s) { return t_s < 1.995 ? 0.4 : 0.0; };
+  const auto belts = polyline({{2, 0.4}, {4, 0}});
+  const std::vector<PhaseSpan> spans = phases(6, {{"cmd_track_left_mps", asked},
+                                                  {"cmd_track_right_mps", asked},
+                                                  {"track_left_mps", belts},
+                                                  {"track_right_mps", belts}});
+  CHECK(names(spans) == std::vector<std::string>{"cruise", "slow down", "stand"});
+  CHECK(spans[1].from_s == Approx(2).margin(0.051));
+  CHECK(spans[1].to_s == Approx(3.8).margin(0.051));
+}
+
+TEST_CASE("A robot pushed while it stands stands") {
+  const auto pushed = [](double t_s) { return t_s > 2 && t_s < 3 ? 0.1 : 0.0; };
+  const std::vector<PhaseSpan> spans = phases(4, {constant("cmd_track_left_mps", 0),
+                                                  constant("cmd_track_right_mps", 0),
+                                                  {"track_left_mps", pushed},
+                                                  {"track_right_mps", pushed}});
+  CHECK(names(spans) == std::vector<std::string>{"stand"});
+}
+
 TEST_CASE("A run that begins with an order to go begins by speeding up, unless its belts run already") {
   const auto first = [](double measured_mps) {
     return phases(2, {constant("cmd_track_left_mps", 0.3),

@@ -24,17 +24,45 @@ std::vector<double> numbers(const std::string& svg, const std::string& attribute
 
 }  // namespace
 
-TEST_CASE("Rows lie on one axis: marks at their values, beyond the view at its edge") {
+TEST_CASE("Rows lie on one axis: marks at their values, beyond the view an arrow") {
   RowChart chart;
   chart.label_px = 86;
-  chart.width_px = 1100;  // 1000 for the plot
+  chart.note_px = 100;
+  chart.width_px = 1200;  // 1000 for the plot
   chart.view = Range{0, 100};
   chart.rows = {
       {"a", {{25, Shape::disc, Ink::real, Range{10, 40}}}, "25 %"}, {"b & c", {{150}}, ""}, {"d", {{-7}}, ""}};
   const std::string svg = to_svg(chart);
   CHECK(fault_of_xml(svg).empty());
-  CHECK(numbers(svg, "cx") == std::vector<double>{250, 1000, 0});
+  CHECK(numbers(svg, "cx") == std::vector<double>{250});
+  CHECK_THAT(svg, Catch::Contains("M1000.0 36.0l-9") && Catch::Contains("<title>150, beyond the axis</title>"));
+  CHECK_THAT(svg, Catch::Contains("M0.0 60.0l9") && Catch::Contains("<title>-7, beyond the axis</title>"));
   CHECK_THAT(svg, Catch::Contains("M100.0 12.0H400.0") && Catch::Contains("b &amp; c") && Catch::Contains("25 %"));
+}
+
+TEST_CASE("An interval that goes on beyond the view has an arrow there instead of an end") {
+  RowChart chart;
+  chart.label_px = 86;
+  chart.width_px = 1100;
+  chart.view = Range{0, 100};
+  chart.rows = {{"a", {{50, Shape::disc, Ink::real, Range{20, 300}}}, ""}};
+  const std::string svg = to_svg(chart);
+  CHECK_THAT(svg, Catch::Contains("M200.0 12.0H1000.0M200.0 8.0v8\"/>"));
+  CHECK_THAT(svg, Catch::Contains("<title>to 300, beyond the axis</title>"));
+}
+
+TEST_CASE("Labels and notes of rows are inside the chart, however long they are") {
+  RowChart chart;
+  chart.label_px = 80;
+  chart.width_px = 540;
+  chart.rows = {{std::string(30, 'a'), {{1}}, "12.3 to 45.6"}};
+  CHECK_THAT(to_svg(chart), Catch::Contains(">" + std::string(30, 'a') + "</text>"));  // 216 px and the gaps
+  chart.rows[0].label = std::string(100, 'a') + "the end";
+  CHECK_THAT(to_svg(chart), Catch::Contains("athe end</text>") && !Catch::Contains(std::string(40, 'a')));
+  chart.guides = {{1, "a guide with many words"}};
+  chart.view = Range{0, 1};  // at the right edge
+  const std::string svg = to_svg(chart);
+  CHECK(fault_of_xml(svg).empty());
 }
 
 TEST_CASE("On a logarithmic axis a factor of ten is as long everywhere, and what is not positive is at the left") {
@@ -45,10 +73,10 @@ TEST_CASE("On a logarithmic axis a factor of ten is as long everywhere, and what
   chart.view = Range{0.1, 100};  // three factors of ten on 1000 px
   chart.rows = {{"a", {{1}, {10}}, ""}, {"b", {{0}}, ""}};
   const std::vector<double> at = numbers(to_svg(chart), "cx");
-  REQUIRE(at.size() == 3);
+  REQUIRE(at.size() == 2);
   CHECK(at[0] == Approx(1000 / 3.0).margin(0.06));  // written with one decimal
   CHECK(at[1] == Approx(2000 / 3.0).margin(0.06));
-  CHECK(at[2] == 0);
+  CHECK_THAT(to_svg(chart), Catch::Contains("M0.0 36.0l9") && Catch::Contains("<title>0, beyond the axis</title>"));
 }
 
 TEST_CASE("Rows without a number, and no rows at all") {
