@@ -28,14 +28,15 @@ h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 40px 0 2p
 p { margin: 6px 0; max-width: 80ch; }
 .soft { color: var(--soft); } a { color: var(--real); }
 .tables { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 13px; margin: 12px 0; font-variant-numeric: tabular-nums; }
-th, td { padding: 3px 9px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
+table { border-collapse: collapse; font-size: 12px; margin: 12px 0; font-variant-numeric: tabular-nums; }
+th, td { padding: 3px 5px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 th { font-weight: 600; color: var(--soft); } th.group { text-align: center; border-left: 1px solid var(--grid); }
 td.first, th.first { border-left: 1px solid var(--grid); }
 tr.sum td { font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 20px; margin-top: 8px; }
-@media print { h2 { break-before: page; } svg.chart { break-inside: avoid; } }
+@media print { h2 { break-before: page; } svg.chart, tr { break-inside: avoid; } .tables { overflow: visible; }
+  table { font-size: 8px; } th, td { padding: 2px; } th:first-child, td:first-child { white-space: normal; } }
 )";
 
 // The worlds of the real runs, each loaded once; null if one does not load, with the reason in `notes`.

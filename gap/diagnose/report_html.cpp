@@ -37,7 +37,9 @@ dd { margin: 0; } dd p, dd ul { margin: 0; } dd ul { padding-left: 18px; } dd li
 details { margin: 16px 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 12px; margin: 8px 0; }
 @media print { body { max-width: none; } nav { display: none; } svg.chart, tr, .verdict { break-inside: avoid; }
-  h2, h3 { break-after: avoid; } .tables svg.chart { max-width: 100%; } }
+  h2, h3 { break-after: avoid; } .tables { overflow: visible; } .tables svg.chart { max-width: 100%; }
+  table { font-size: 10px; } th, td, td.text { padding: 2px 4px; white-space: normal; max-width: none; overflow-wrap: break-word; }
+  .glance { font-size: 11px; } .share { width: 110px; } }
 )";
 
 std::string contents(const Diagnosis& d) {

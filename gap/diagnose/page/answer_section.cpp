@@ -45,20 +45,24 @@ std::string stages_at_a_glance(const Diagnosis& d) {
     // the bar: length by the stage's share of the gap, split into explained and left
     const StageDiagnosis& stage = d.stages[s];
     const bool has_gap = stage.decision.verdict != Verdict::none;
-    const double share = has_gap ? share_of_gap(d, s) : 0, gone = explained(stage);
+    const double share = share_of_gap(d, s), gone = explained(stage);
     const double gone_part = std::isnan(gone) ? 0 : share * gone;
     const NamesFound names = names_found(stage);
 
     // the verdict, with the names found
     std::string verdict = has_gap ? std::string(verdict_name(stage.decision.verdict)) : "no gap";
     if (!names.empty()) verdict += ": " + names_in_words(d, names);
+    const std::string bar = has_gap
+                                ? fmt::format(
+                                      "<span class=\"share\"><span class=\"gone\" style=\"width:{:.1f}%\"></span><span "
+                                      "class=\"left\" style=\"width:{:.1f}%\"></span></span> {}",
+                                      100 * gone_part, 100 * (share - gone_part), percent(share))
+                                : "none";
     html += fmt::format(
-        "<tr><td class=\"text\"><a href=\"#{}\">{}</a></td><td class=\"text\"><span class=\"share\"><span "
-        "class=\"gone\" "
-        "style=\"width:{:.1f}%\"></span><span class=\"left\" style=\"width:{:.1f}%\"></span></span> {}</td>"
-        "<td class=\"text wrap\">{}</td><td class=\"text\">{}</td></tr>\n",
-        stage_id(stage.passage), passage_name(stage.passage), 100 * gone_part, 100 * (share - gone_part),
-        has_gap ? percent(share) : "", escaped(verdict), has_gap ? percent_interval(explained_interval(stage)) : "");
+        "<tr><td class=\"text\"><a href=\"#{}\">{}</a></td><td class=\"text\">{}</td><td class=\"text wrap\">{}</td>"
+        "<td class=\"text\">{}</td></tr>\n",
+        stage_id(stage.passage), passage_name(stage.passage), bar, escaped(verdict),
+        has_gap ? percent_interval(explained_interval(stage)) : "");
   }
 
   // a key to the two colours

@@ -59,8 +59,7 @@ std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
 std::string matrix(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
   plot::HeatMap map;
   map.title = "Similarity of the effects in these runs: angle between their shifts, in degrees";
-  map.legend =
-      fmt::format("0: identical (dark); 90: orthogonal; below {:.0f}: indistinguishable", kDistinguishable_deg);
+  map.legend = fmt::format("0: identical (dark); 90: orthogonal; below {:.0f}: alike", kDistinguishable_deg);
   map.width_px = kWide_px;
   map.rows = map.columns = names;
   for (std::size_t r = 0; r < names.size(); ++r) {
@@ -77,15 +76,37 @@ std::string matrix(const std::vector<std::string>& names, const MatrixXd& angle_
   return "<div class=\"tables\">" + to_svg(map) + "</div>\n";
 }
 
-std::string pairs_in_words(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
+// Whether the decision tells two candidates apart although they shift the runs alike: one is named, and the other is no
+// rival of it.
+bool told_apart(const StageDiagnosis& stage, std::size_t a, std::size_t b) {
+  return std::ranges::any_of(stage.decision.effects, [&](const ModelEffect& effect) {
+    const std::size_t other = effect.candidate == a ? b : a;
+    return (effect.candidate == a || effect.candidate == b) && effect.doubts.empty() &&
+           std::ranges::find(effect.rivals, other) == effect.rivals.end();
+  });
+}
+
+// `candidates`: of Diagnosis::candidates, in the order of the matrix.
+std::string pairs_in_words(const Diagnosis& d, const StageDiagnosis& stage, const std::vector<std::size_t>& candidates,
+                           const MatrixXd& angle_deg) {
   std::vector<std::string> pairs;
-  for (std::size_t a = 0; a < names.size(); ++a)
-    for (std::size_t b = a + 1; b < names.size(); ++b)
-      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kDistinguishable_deg)
-        pairs.push_back(fmt::format("<li>{} and {} ({:.1f} degrees)</li>\n", plot::escaped(names[a]),
-                                    plot::escaped(names[b]), angle));
+  bool some_told_apart = false;
+  for (std::size_t a = 0; a < candidates.size(); ++a)
+    for (std::size_t b = a + 1; b < candidates.size(); ++b)
+      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kDistinguishable_deg) {
+        const bool apart = told_apart(stage, candidates[a], candidates[b]);
+        some_told_apart |= apart;
+        pairs.push_back(
+            fmt::format("<li>{} and {} ({:.1f} degrees{})</li>\n", plot::escaped(d.candidates[candidates[a]].name),
+                        plot::escaped(d.candidates[candidates[b]].name), angle, apart ? "; told apart here" : ""));
+      }
   if (pairs.empty()) return paragraph(fmt::format("No two of these are within {:.0f} degrees.", kDistinguishable_deg));
-  std::string html = paragraph("These runs cannot distinguish:") + "<ul>\n";
+  std::string html = paragraph(fmt::format("Within {:.0f} degrees, so that a small one may be taken for the other:{}",
+                                           kDistinguishable_deg,
+                                           some_told_apart ? " (told apart: one is named, as at its size the other, "
+                                                             "fitted in its place, explains these runs worse)"
+                                                           : "")) +
+                     "<ul>\n";
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) html += pairs[i];
   if (pairs.size() > kMostPairs) html += fmt::format("<li>and {} more pairs</li>\n", pairs.size() - kMostPairs);
   return html + "</ul>\n";
@@ -129,8 +150,9 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
   MatrixXd angle_deg = select(rows, isolability.angle_deg);
   const std::vector<std::size_t> order = look_alikes_together(angle_deg);
   angle_deg = select(order, angle_deg);
-  std::vector<std::string> names;
-  for (const std::size_t i : order) names.push_back(d.candidates[isolability.candidates[rows[i]]].name);
+  std::vector<std::size_t> candidates;
+  for (const std::size_t i : order) candidates.push_back(isolability.candidates[rows[i]]);
+  const std::vector<std::string> names = candidate_names(d, candidates);
 
   // how to read it, what is not shown, then matrix and pairs
   std::string html = "<details><summary>Which effects these runs can distinguish</summary>\n";
@@ -143,7 +165,7 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
                                   "that explain most alone. report.json lists all.",
                                   rows.size(), isolability.candidates.size()),
                       "soft");
-  return html + matrix(names, angle_deg) + pairs_in_words(names, angle_deg) + "</details>\n";
+  return html + matrix(names, angle_deg) + pairs_in_words(d, stage, candidates, angle_deg) + "</details>\n";
 }
 
 }  // namespace kenaf::gap::diagnose

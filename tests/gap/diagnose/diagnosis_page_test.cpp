@@ -84,6 +84,24 @@ TEST_CASE("A page has every number of every stage") {
   CHECK_THAT(page, Contains("Seed of resampling: 4711") && Contains("Simulated runs: 321"));
 }
 
+TEST_CASE("A stage without a gap has no bar, also where it is the only one") {
+  Diagnosis d = made_diagnosis();
+  for (StageDiagnosis& stage : d.stages) stage.decision.verdict = Verdict::none;
+  d.verdict = Verdict::none;
+  CHECK_THAT(answers_of(d), !Contains("class=\"share\"") && Contains("no gap"));
+}
+
+TEST_CASE("A named effect is told from what looks like it, unless that is a rival") {
+  Diagnosis d = made_diagnosis();
+  StageDiagnosis& stage = d.stages[0];
+  REQUIRE(stage.decision.effects.size() == 1);
+  stage.isolability.candidates = {drive_lag, track_separation};
+  stage.isolability.angle_deg = (Eigen::Matrix2d() << 0, 5, 5, 0).finished();
+  CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees; told apart here)"));
+  stage.decision.effects[0].rivals = {drive_lag, track_separation};
+  CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees)") && !Contains("told apart here"));
+}
+
 TEST_CASE("A page needs nothing but itself, and its colours follow light, dark and paper") {
   const std::string page = page_of(made_diagnosis());
   CHECK_THAT(page, !Contains("<script") && !Contains("<link") && !Contains("href=\"http") && !Contains("src=") &&
