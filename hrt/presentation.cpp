@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace kenaf::hrt {
@@ -52,7 +53,10 @@ hrt_state state_from(const Snapshot& snapshot) {
   scale(measured.track_m, kMillimetres, state.track_mm);
   scale(measured.track_mps, kMillimetres, state.track_mmps);
   scale(measured.track_a, 1, state.track_a);
-  scale(measured.flipper_rad, kDegrees, state.flipper_deg);
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const double angle_rad = measured.flipper_rad[i];
+    state.flipper_deg[i] = std::isnan(angle_rad) ? 0 : angle_rad * kDegrees;  // robot::kNoFlipper
+  }
   scale(measured.flipper_a, 1, state.flipper_a);
   state.battery_v = measured.battery_v;
 

@@ -46,8 +46,8 @@ void check_period(const canbus::RobotBus& bus, double period_s) {
 }
 
 BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
-    : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus) {
-  for (std::size_t i = 0; i < pdos_.size(); ++i) pdos_[i] = canbus::pdos_of(bus, i);
+    : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus), sent_(bus.drives.size()) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) pdos_.push_back(canbus::pdos_of(bus, i));
   master_.watch([this](const canopen::ReceivedFrame& frame) { image_.on_frame(frame); });
 }
 
@@ -106,7 +106,7 @@ bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
 }
 
 std::optional<std::size_t> BusCycle::lost_drive() const {
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     const DriveInput& drive = image_.drive(i);
     if (drive.restarted || is_silent(drive.state_at, kSilentDrive_s) ||
         canopen::power_state_of(drive.statusword) != PowerState::operation_enabled)

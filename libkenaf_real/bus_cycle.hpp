@@ -1,10 +1,10 @@
 // The bus cycle, SYNC by SYNC: measurements of the nodes, commands to the drives, and detection of silent nodes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/master.hpp"
@@ -25,7 +25,7 @@ struct DriveOrder {
   std::uint16_t controlword = 0;
   std::int32_t target = 0;  // position or velocity, according to the drive's mode, in its units
 };
-using DriveOrders = std::array<DriveOrder, canbus::kDriveCount>;
+using DriveOrders = std::vector<DriveOrder>;  // of each drive in RobotBus::drives
 
 struct Beat {
   std::uint32_t number;  // 1 = the first SYNC; a step of more than one: SYNCs that never came
@@ -53,7 +53,7 @@ class BusCycle {
   std::optional<Beat> wait();
   // In force from the next SYNC on; late if that has already come. Throws HeldUp.
   void send(const DriveOrders& orders);
-  const DriveOrders& sent() const { return sent_; }
+  const DriveOrders& sent() const { return sent_; }  // zeros at first
   std::uint32_t late_orders() const { return late_; }
   double round_trip_s() const { return round_trip_s_; }  // newest SYNC to its last answer
 
@@ -74,8 +74,8 @@ class BusCycle {
   const canbus::RobotBus& bus_;
   const canopen::Time period_;
   ProcessImage image_;
-  std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_;
-  DriveOrders sent_{};
+  std::vector<canbus::DrivePdos> pdos_;
+  DriveOrders sent_;
   std::optional<canopen::Time> first_sync_at_, answered_sync_at_;
   std::uint32_t number_ = 0, late_ = 0;
   double round_trip_s_ = 0;

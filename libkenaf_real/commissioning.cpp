@@ -34,7 +34,7 @@ constexpr std::int64_t kFaultReactionQuickStop = 2;  // CiA 402, 0x605E: slow do
 
 std::vector<NamedNode> nodes_of(const RobotBus& bus) {
   std::vector<NamedNode> nodes;
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) nodes.push_back(drive_node(bus, i));
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) nodes.push_back(drive_node(bus, i));
   if (bus.inclinometer) nodes.push_back({bus.inclinometer->node, "inclinometer"});
   if (bus.gyro) nodes.push_back({bus.gyro->node, "gyro"});
   return nodes;
@@ -220,7 +220,7 @@ double set_up_inclinometer(Master& master, const RobotBus& bus) {
 }  // namespace
 
 NamedNode drive_node(const RobotBus& bus, std::size_t drive) {
-  return {bus.drives[drive].node, canbus::kDriveNames[drive]};
+  return {bus.drives[drive].node, bus.drives[drive].name};
 }
 
 std::vector<SdoWrite> parameters_of(const RobotBus& bus, std::size_t i, double period_s) {
@@ -236,7 +236,7 @@ std::vector<SdoWrite> parameters_of(const RobotBus& bus, std::size_t i, double p
       make_write(object::max_profile_velocity, full_speed, "speed limit"),
       make_write(object::profile_acceleration, acceleration, "acceleration"),
       // motions ramp by themselves; a track commanded to stop in any other case must stop at once
-      make_write(object::profile_deceleration, canbus::is_track(i) ? stop : acceleration, "deceleration"),
+      make_write(object::profile_deceleration, drive.is_flipper() ? acceleration : stop, "deceleration"),
   };
   if (is_position(drive.mode)) {
     const std::int32_t ends[] = {position_to_drive(units, drive.min_position),
@@ -261,9 +261,9 @@ NodeFacts commission(Master& master, const RobotBus& bus, double period_s, doubl
   master.start_heartbeat();  // from here on, so that nodes watching for it while starting see a master
   reset_communication(master, bus, patience_s);
   NodeFacts facts;
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const std::optional<double> rated_a = set_up_drive(master, bus, i, period_s);
-    facts.rated_current_a[i] = rated_a.value_or(0);
+    facts.rated_current_a.push_back(rated_a.value_or(0));
     facts.has_currents = facts.has_currents && rated_a;
   }
   if (bus.inclinometer) facts.slope_unit_rad = set_up_inclinometer(master, bus);

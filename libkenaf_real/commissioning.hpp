@@ -2,7 +2,7 @@
 // drives are not enabled here (power.hpp does that).
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/master.hpp"
@@ -11,7 +11,7 @@ namespace kenaf::real {
 
 // Facts reported by the nodes, beyond the description.
 struct NodeFacts {
-  std::array<double, canbus::kDriveCount> rated_current_a{};
+  std::vector<double> rated_current_a;  // of each drive
   bool has_currents =
       true;  // false: a rated current is missing, without which a drive's current in thousandths of it has no meaning
   double slope_unit_rad = 0;  // unit of the inclinometer's numbers

@@ -21,26 +21,23 @@ void PositionRamp::step(double target, double max_speed, double acceleration, do
   position += speed * dt_s;
 }
 
-DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image) : bus_(bus) {
-  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
-    const std::size_t drive = robot::kTrackCount + f;
-    hold_rad_[f] = ramps_[f].position = position_from_drive(bus.drives[drive].units, image.drive(drive).position);
+DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image)
+    : bus_(bus), track_mps_(bus.drives.size()) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) {
+    const DriveOnBus& drive = bus.drives[i];
+    if (!drive.is_flipper()) continue;
+    hold_rad_[*drive.flipper] = position_from_drive(drive.units, image.drive(i).position);
+    ramps_[*drive.flipper].position = hold_rad_[*drive.flipper];
   }
 }
 
 DriveOrders DriveTargets::step(const robot::Command& command, const ProcessImage& image, double period_s) {
   DriveOrders orders;
-  for (std::size_t t = 0; t < robot::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
-  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
-    const std::size_t drive = robot::kTrackCount + f;
-    const bool commanded = command.flipper[f].mode == robot::JointMode::angle;
-    const DriveOnBus& on_bus = bus_.drives[drive];
-    // a drive that was never commanded stays where it is, even outside its limits
-    if (commanded)
-      hold_rad_[f] = robot::reachable_angle(command.flipper[f].value,
-                                            position_from_drive(on_bus.units, image.drive(drive).position),
-                                            on_bus.min_position, on_bus.max_position);
-    orders[drive] = flipper(drive, commanded, image.drive(drive), period_s);
+  orders.reserve(bus_.drives.size());
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
+    const DriveOnBus& drive = bus_.drives[i];
+    orders.push_back(drive.is_flipper() ? flipper(i, command.flipper[*drive.flipper], image.drive(i), period_s)
+                                        : track(i, command.track_speed_mps[drive.side], period_s));
   }
   return orders;
 }
@@ -56,9 +53,15 @@ DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s)
   return {canopen::kControlEnable, velocity_to_drive(drive.units, track_mps_[i])};
 }
 
-DriveOrder DriveTargets::flipper(std::size_t i, bool commanded, const DriveInput& input, double period_s) {
+DriveOrder DriveTargets::flipper(std::size_t i, const robot::JointCommand& command, const DriveInput& input,
+                                 double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
-  const std::size_t f = i - robot::kTrackCount;
+  const robot::Flipper f = *drive.flipper;
+  const bool commanded = command.mode == robot::JointMode::angle;
+  // a drive that was never commanded stays where it is, even outside its limits
+  if (commanded)
+    hold_rad_[f] = robot::reachable_angle(command.value, position_from_drive(drive.units, input.position),
+                                          drive.min_position, drive.max_position);
   if (drive.mode == DriveMode::cyclic_position) {
     ramps_[f].step(hold_rad_[f], drive.max_speed, drive.acceleration, period_s);
     return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "can/canopen/drive.hpp"
@@ -22,17 +23,18 @@ class DriveTargets {
   // The flippers stay where they are until they are commanded.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // A speed out of range is limited to the description's maximum; a flipper angle is taken to the same direction within
-  // the limits or, if there is none, to the nearer limit. Ramps advance by one period per call, even if the previous
-  // call is longer ago: a drive reaches each target within a period, and catching up would be a jump beyond the limits.
+  // Commands to flippers that the robot has not are ignored. A speed out of range is limited to the description's
+  // maximum; a flipper angle is taken to the same direction within the limits or, if there is none, to the nearer
+  // limit. Ramps advance by one period per call, even if the previous call is longer ago: a drive reaches each target
+  // within a period, and catching up would be a jump beyond the limits.
   DriveOrders step(const robot::Command& command, const ProcessImage& image, double period_s);
 
  private:
   DriveOrder track(std::size_t drive, double speed_mps, double period_s);
-  DriveOrder flipper(std::size_t drive, bool commanded, const DriveInput& input, double period_s);
+  DriveOrder flipper(std::size_t drive, const robot::JointCommand& command, const DriveInput& input, double period_s);
 
   const canbus::RobotBus& bus_;
-  std::array<double, robot::kTrackCount> track_mps_{};
+  std::vector<double> track_mps_;  // of each drive: the speed it was commanded last; flippers 0
   std::array<double, robot::kFlipperCount> hold_rad_{};
   std::array<PositionRamp, robot::kFlipperCount> ramps_{};
   std::array<canopen::SetPointHandshake, robot::kFlipperCount> handshakes_{};

@@ -10,7 +10,6 @@
 namespace kenaf::real {
 namespace {
 
-using canbus::DriveUnits;
 using canbus::InclinometerAxis;
 
 constexpr double kStanding_mps = 0.002;
@@ -31,35 +30,34 @@ std::int32_t difference(std::int32_t now, std::int32_t before) {
 }  // namespace
 
 MeasuredState::MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s)
-    : bus_(bus), facts_(facts), period_s_(period_s) {}
+    : bus_(bus), facts_(facts), period_s_(period_s), travels_(bus.drives.size()) {}
 
 robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   robot::State state{};
   state.frame = beat.number;
   state.robot_time_s = beat.number * period_s_;
   state.late_commands = cycle.late_orders();
-  state.fields = robot::kHasEncoders | robot::kHasFlippers;
+  state.fields = robot::kHasEncoders;
+  if (has_flippers(bus_)) {
+    state.fields |= robot::kHasFlippers;
+    state.flipper_rad.fill(robot::kNoFlipper);
+  }
   const bool has_currents = bus_.has_currents && facts_.has_currents;
   if (has_currents) state.fields |= robot::kHasCurrents;
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
+    const canbus::DriveOnBus& drive = bus_.drives[i];
+    // CiA 402, 0x6078: thousandths of the rated current
+    const double current_a =
+        has_currents ? 1e-3 * std::abs(cycle.image().drive(i).current_permil) * facts_.rated_current_a[i] : 0;
+    if (drive.is_flipper()) {
+      state.flipper_rad[*drive.flipper] = position_from_drive(drive.units, cycle.image().drive(i).position);
+      state.flipper_a[*drive.flipper] = current_a;
+    } else {
+      add_to_side(i, cycle.image().drive(i), state);
+      state.track_a[drive.side] += current_a;
+    }
+  }
   const ProcessImage& image = cycle.image();
-  const double current_unit = 1e-3;  // CiA 402, 0x6078: thousandths of the rated current
-  const auto current_a = [&](std::size_t i) {
-    return has_currents ? std::abs(image.drive(i).current_permil) * current_unit * facts_.rated_current_a[i] : 0;
-  };
-  for (std::size_t t = 0; t < robot::kTrackCount; ++t) {
-    const DriveInput& drive = image.drive(t);
-    const DriveUnits& units = bus_.drives[t].units;
-    travelled_counts_[t] += last_beat_ == 0 ? 0 : difference(drive.position, last_counts_[t]);
-    last_counts_[t] = drive.position;
-    state.track_m[t] = static_cast<double>(travelled_counts_[t]) / units.counts_per_unit;
-    state.track_mps[t] = velocity_from_drive(units, drive.velocity);
-    state.track_a[t] = current_a(t);
-  }
-  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
-    const std::size_t i = robot::kTrackCount + f;
-    state.flipper_rad[f] = position_from_drive(bus_.drives[i].units, image.drive(i).position);
-    state.flipper_a[f] = current_a(i);
-  }
   if (const std::optional<double> battery_v = image.battery_v()) {
     state.battery_v = *battery_v;
     state.fields |= robot::kHasBattery;
@@ -68,6 +66,18 @@ robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   add_posture(cycle, beats * period_s_, state);
   last_beat_ = beat.number;
   return state;
+}
+
+// Several drives of a side: the mean of their travels and of their speeds, as ros2_controllers' diff_drive_controller
+// takes it of the wheels of a side. One that slips or spins free counts with its share, and no drive is singled out.
+void MeasuredState::add_to_side(std::size_t i, const DriveInput& input, robot::State& state) {
+  const canbus::DriveOnBus& drive = bus_.drives[i];
+  const auto count = static_cast<double>(drives_of_side(bus_, drive.side));
+  Travel& travel = travels_[i];
+  travel.counts += last_beat_ == 0 ? 0 : difference(input.position, travel.last);
+  travel.last = input.position;
+  state.track_m[drive.side] += static_cast<double>(travel.counts) / drive.units.counts_per_unit / count;
+  state.track_mps[drive.side] += velocity_from_drive(drive.units, input.velocity) / count;
 }
 
 void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state) {
@@ -86,8 +96,10 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, robot::
   state.posture_rad[1] = angle_from(bus_.inclinometer->pitch, image.slope(), facts_.slope_unit_rad);
   // the rate during a slow turn is not a bias
   bool standing = true;
-  for (std::size_t t = 0; t < robot::kTrackCount; ++t) {
-    standing = standing && std::abs(state.track_mps[t]) < kStanding_mps && cycle.sent()[t].target == 0;
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
+    const canbus::DriveOnBus& drive = bus_.drives[i];
+    if (drive.is_flipper()) continue;
+    standing = standing && std::abs(state.track_mps[drive.side]) < kStanding_mps && cycle.sent()[i].target == 0;
   }
   elapsed_s += std::min(std::exchange(unseen_s_, 0), kLongestCatchUp_s);
   heading_.update(image.gyro().rate / bus_.gyro->units_per_radps, state.posture_rad[0], state.posture_rad[1], standing,

@@ -2,9 +2,9 @@
 // wrap, posture from inclinometer and gyro.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
@@ -24,14 +24,18 @@ class MeasuredState {
   const std::string& warning() const { return warning_; }
 
  private:
+  void add_to_side(std::size_t drive, const DriveInput& input, robot::State& state);
   void add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state);
 
   const canbus::RobotBus& bus_;
   const NodeFacts facts_;
   const double period_s_;
   std::uint32_t last_beat_ = 0;
-  std::array<std::int32_t, robot::kTrackCount> last_counts_{};
-  std::array<std::int64_t, robot::kTrackCount> travelled_counts_{};
+  struct Travel {
+    std::int32_t last = 0;    // the drive's counter, which wraps
+    std::int64_t counts = 0;  // since the first beat
+  };
+  std::vector<Travel> travels_;  // of each drive; not used for flippers
   Heading heading_;
   double unseen_s_ = 0;  // time without inclinometer or gyro that the heading does not cover yet
   std::string warning_;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "can/canopen/device.hpp"
 #include "hrt/error.hpp"
@@ -12,7 +13,6 @@
 namespace kenaf::real {
 namespace {
 
-using canbus::kDriveCount;
 using canopen::DriveMode;
 using canopen::PowerState;
 using canopen::Time;
@@ -60,7 +60,7 @@ void wait_in_set_up(BusCycle& cycle) {
 // unpowered one would remove the torque of one that holds the robot.
 void hear_all(BusCycle& cycle) {
   const Time until = cycle.master().now() + kPowerUp;
-  for (std::size_t i = 0; i < kDriveCount;) {
+  for (std::size_t i = 0; i < cycle.bus().drives.size();) {
     if (cycle.image().drive(i).state_at) {
       ++i;
     } else if (cycle.master().now() > until) {
@@ -78,8 +78,8 @@ void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(st
   while (true) {
     wait_in_set_up(cycle);
     std::optional<std::size_t> missing;
-    DriveOrders orders;
-    for (std::size_t i = 0; i < kDriveCount; ++i) {
+    DriveOrders orders(cycle.bus().drives.size());
+    for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
       orders[i] = order(i);
       if (!missing && !done(i)) missing = i;
     }
@@ -95,7 +95,7 @@ std::uint16_t control_out_of_quick_stop(int cycles_in_it) {
 }
 
 void enable_all(BusCycle& cycle) {
-  std::array<int, kDriveCount> cycles_in_quick_stop{};
+  std::vector<int> cycles_in_quick_stop(cycle.bus().drives.size());
   const auto controlword = [&](std::size_t i) {
     const PowerState state = state_of(cycle, i);
     return state == PowerState::quick_stop_active
@@ -165,7 +165,7 @@ void check_home(const BusCycle& cycle, std::size_t i) {
 void home(BusCycle& cycle) {
   const auto homes = [&](std::size_t i) { return cycle.bus().drives[i].homing.has_value(); };
   double patience_s = 0;
-  for (std::size_t i = 0; i < kDriveCount; ++i) {
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
     if (!homes(i)) continue;
     begin_homing(cycle, i);
     patience_s = std::max(patience_s, cycle.bus().drives[i].homing->patience_s);
@@ -206,10 +206,10 @@ void home(BusCycle& cycle) {
         return cycles_low >= kCyclesLow;
       },
       [&](std::size_t i) { return not_enabled(cycle, i); });
-  for (std::size_t i = 0; i < kDriveCount; ++i) {
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
     if (homes(i)) check_home(cycle, i);
   }
-  for (std::size_t i = 0; i < kDriveCount; ++i) {
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
     if (homes(i)) write_mode(cycle, i, cycle.bus().drives[i].mode);
   }
 }
@@ -243,7 +243,7 @@ void power_up(BusCycle& cycle) try {
   hear_all(cycle);
   enable_all(cycle);
   cycle.watch_restarts();
-  for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
   home(cycle);
 } catch (const Error&) {
   try_quick_stop(cycle);  // enabled drives, possibly moving home, must not wait until they miss the heartbeat
@@ -251,8 +251,9 @@ void power_up(BusCycle& cycle) try {
 }
 
 void quick_stop(BusCycle& cycle) {
-  DriveOrders orders;
-  for (std::size_t i = 0; i < kDriveCount; ++i) orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
+  DriveOrders orders(cycle.bus().drives.size());
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i)
+    orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
   cycle.send(orders);
 }
 
@@ -278,7 +279,7 @@ std::string power_down(BusCycle& cycle) {
   const auto has_stopped = [&](std::size_t i) {
     const DriveInput& drive = cycle.image().drive(i);
     const bool left = is_new(drive.state_at) && state_of(cycle, i) != PowerState::operation_enabled;
-    return left && (!canbus::is_track(i) || (is_new(drive.effort_at) && is_at_rest(cycle, i)));
+    return left && (cycle.bus().drives[i].is_flipper() || (is_new(drive.effort_at) && is_at_rest(cycle, i)));
   };
   std::string running;
   do {
@@ -286,11 +287,11 @@ std::string power_down(BusCycle& cycle) {
     quick_stop(cycle);
     cycle.wait();
     running.clear();
-    for (std::size_t i = 0; i < kDriveCount; ++i) {
+    for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
       if (!has_stopped(i)) running += (running.empty() ? "" : ", ") + not_stopped(cycle, i, is_new);
     }
   } while (!running.empty() && cycle.master().now() < begin + kPowerDown);
-  for (std::size_t i = 0; i < kDriveCount; ++i) {
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
     if (has_stopped(i)) end_watch(cycle, i);
   }
   return running;

@@ -2,7 +2,6 @@
 // controlword in a PDO, so that heartbeat and supervision continue meanwhile.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "can/canbus/robot_bus.hpp"

@@ -8,15 +8,16 @@ using canopen::NmtState;
 using canopen::ReceivedFrame;
 using canopen::Time;
 
-std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_of_all(const canbus::RobotBus& bus) {
-  std::array<canbus::DrivePdos, canbus::kDriveCount> out;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = canbus::pdos_of(bus, i);
+std::vector<canbus::DrivePdos> pdos_of_all(const canbus::RobotBus& bus) {
+  std::vector<canbus::DrivePdos> out;
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) out.push_back(canbus::pdos_of(bus, i));
   return out;
 }
 
 }  // namespace
 
-ProcessImage::ProcessImage(const canbus::RobotBus& bus) : bus_(bus), pdos_(pdos_of_all(bus)) {}
+ProcessImage::ProcessImage(const canbus::RobotBus& bus)
+    : bus_(bus), pdos_(pdos_of_all(bus)), drives_(bus.drives.size()) {}
 
 void ProcessImage::watch_restarts() {
   for (DriveInput& drive : drives_) drive.restarted = false;
@@ -44,7 +45,7 @@ void ProcessImage::on_drive_frame(std::size_t i, const ReceivedFrame& received) 
   } else if (pdos_[i].has_effort && frame.id == cob_id(pdos_[i].effort, node)) {
     const std::size_t count = pdos_[i].effort.objects.size();
     if (!unpack(pdos_[i].effort, frame, std::span(values).first(count))) return;
-    if (canbus::is_track(i)) drive.velocity = static_cast<std::int32_t>(values[0]);
+    if (!bus_.drives[i].is_flipper()) drive.velocity = static_cast<std::int32_t>(values[0]);
     if (bus_.has_currents) drive.current_permil = static_cast<std::int16_t>(values[count - 1]);
     drive.effort_at = received.at;
   } else if (pdos_[i].has_battery && frame.id == cob_id(pdos_[i].battery, node)) {
@@ -71,7 +72,7 @@ bool ProcessImage::is_complete() const {
   if (!sync_at_) return false;
   const auto is_new = [this](const std::optional<Time>& at) { return at && *at >= *sync_at_; };
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    if (!is_new(drives_[i].state_at) || (canbus::is_track(i) && !is_new(drives_[i].effort_at))) return false;
+    if (!is_new(drives_[i].state_at) || (!bus_.drives[i].is_flipper() && !is_new(drives_[i].effort_at))) return false;
   }
   return (!bus_.inclinometer || is_new(slope_.at)) && (!bus_.gyro || is_new(gyro_.at));
 }

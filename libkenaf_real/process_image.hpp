@@ -1,9 +1,9 @@
 // The newest values that the nodes send in the control loop, in the drives' own units, and their times of arrival.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "can/canbus/bus_layout.hpp"
 #include "can/canbus/robot_bus.hpp"
@@ -15,7 +15,7 @@ namespace kenaf::real {
 struct DriveInput {
   std::uint16_t statusword = 0;
   std::int32_t position = 0;
-  std::int32_t velocity = 0;        // tracks
+  std::int32_t velocity = 0;        // tracks, wheels
   std::int16_t current_permil = 0;  // of the rated current
   std::optional<canopen::Time> state_at, effort_at;
   std::optional<canopen::Emergency> emergency;  // the newest, until it is cleared
@@ -53,9 +53,9 @@ class ProcessImage {
   void on_sensor_frame(const canopen::ReceivedFrame& received);
 
   const canbus::RobotBus& bus_;
-  std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_;
+  std::vector<canbus::DrivePdos> pdos_;
   canopen::Pdo slope_pdo_ = canbus::inclinometer_pdo();
-  std::array<DriveInput, canbus::kDriveCount> drives_{};
+  std::vector<DriveInput> drives_;
   SlopeInput slope_;
   GyroInput gyro_;
   std::optional<double> battery_v_;

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "robot/parts.hpp"
 
@@ -17,12 +18,15 @@ namespace kenaf::robot {
 enum StateField : std::uint32_t {
   kHasPosture = 1u << 0,      // posture_rad: the robot's own orientation sensor
   kHasEncoders = 1u << 1,     // track_m, track_mps
-  kHasFlippers = 1u << 2,     // flipper_rad
+  kHasFlippers = 1u << 2,     // flipper_rad, of those that the robot has
   kHasCurrents = 1u << 3,     // track_a, flipper_a
   kHasBattery = 1u << 4,      // battery_v
   kHasInertial = 1u << 5,     // gyro_radps, acceleration_mps2
   kHasGroundTruth = 1u << 6,  // p_WB_m, orientation_rad: only a simulator knows it
 };
+
+// The angle of a flipper that the robot has not. It compares as false with every number.
+inline constexpr double kNoFlipper = std::numeric_limits<double>::quiet_NaN();
 
 // A StateField shifted left by this: its sensor reported nothing since the State before, and the value is the last one.
 inline constexpr int kHeldShift = 16;
@@ -48,7 +52,7 @@ struct State {
   std::array<double, kTrackCount> track_m;  // travel since the robot was placed
   std::array<double, kTrackCount> track_mps;
   std::array<double, kTrackCount> track_a;
-  std::array<double, kFlipperCount> flipper_rad;
+  std::array<double, kFlipperCount> flipper_rad;  // kNoFlipper where the robot has none there
   std::array<double, kFlipperCount> flipper_a;
   double battery_v;
   std::array<double, 3> p_WB_m;

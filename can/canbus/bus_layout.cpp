@@ -30,14 +30,14 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
   const double cycles_per_s = 1 / period_s;
   std::vector<Traffic> all{{canopen::kSync, cycles_per_s}};
   const auto add = [&](const Pdo& pdo) { all.push_back({frame_of(pdo), cycles_per_s / pdo.transmission}); };
-  for (std::size_t i = 0; i < kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const DrivePdos pdos = pdos_of(bus, i);
     add(pdos.state);
     if (pdos.has_effort) add(pdos.effort);
     add(pdos.command);
     if (pdos.has_battery) add(pdos.battery);
   }
-  std::size_t nodes = kDriveCount;
+  std::size_t nodes = bus.drives.size();
   if (bus.inclinometer) {
     add(inclinometer_pdo());
     ++nodes;
@@ -57,9 +57,9 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
 
 DrivePdos pdos_of(const RobotBus& bus, std::size_t drive) {
   using enum PdoDirection;
-  const bool track = is_track(drive);
-  Pdo effort{transmit, 2, track ? kEachSync : kEachFifthSync, {}};
-  if (track) effort.objects.push_back(object::velocity_actual);
+  const bool flipper = bus.drives[drive].is_flipper();
+  Pdo effort{transmit, 2, flipper ? kEachFifthSync : kEachSync, {}};
+  if (!flipper) effort.objects.push_back(object::velocity_actual);
   if (bus.has_currents) effort.objects.push_back(object::current_actual);
   const bool has_effort = !effort.objects.empty();
   return {.state = {transmit, 1, kEachSync, {object::statusword, object::position_actual}},

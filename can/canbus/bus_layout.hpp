@@ -16,8 +16,8 @@ namespace kenaf::canbus {
 // PDOs of one drive. All frames of a cycle fit 500 kbit/s at 100 Hz in less than half of its time.
 struct DrivePdos {
   canopen::Pdo state;            // TPDO1, each SYNC: statusword, position
-  canopen::Pdo effort;           // TPDO2: tracks each SYNC velocity, current; flippers each fifth SYNC current
-  canopen::Pdo battery;          // TPDO3, each tenth SYNC, left track only: its supply voltage
+  canopen::Pdo effort;           // TPDO2: tracks, wheels each SYNC velocity, current; flippers each fifth SYNC current
+  canopen::Pdo battery;          // TPDO3, each tenth SYNC, first drive only: its supply voltage
   canopen::Pdo command;          // RPDO1, in force from SYNC: controlword and target velocity or position
   bool has_effort, has_battery;  // false: not used, if the description says that drives have no currents or no voltage
 };

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 
 #include "formats/description/description_file.hpp"
+#include "formats/description/flipper_pairs.hpp"
 #include "formats/description/toml_reader.hpp"
 
 namespace kenaf::canbus {
@@ -23,8 +26,9 @@ using canopen::NodeId;
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 constexpr Range kCounts{.min = -1e9, .max = 1e9};
 constexpr Range kAngle{.min = -kTurn_rad, .max = kTurn_rad};
-// A longer stop is not acceptable: a collision must not be the first sign of a silent commander.
-constexpr double kLongestStop_s = 0.2;
+// Limits of stop_within_s. A collision must not be the first sign of a silent commander.
+constexpr Range kStopWithin{.min = 0.05, .max = 2};
+constexpr std::size_t kMaxDrivesASide = 8;  // as many as there may be wheels
 constexpr int kBitRate = 500'000;
 
 DriveMode read_mode(TomlReader& table, std::array<DriveMode, 2> choice) {
@@ -56,7 +60,7 @@ double motor_turns(TomlReader& table) {
 }
 
 // One drive of its kind: its place on the bus, and its direction of rotation.
-DriveOnBus read_drive(TomlReader table, DriveOnBus drive) {
+DriveOnBus read_drive(TomlReader& table, DriveOnBus drive) {
   drive.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
   const int direction = read_direction(table);
   drive.units.counts_per_unit *= direction;
@@ -97,7 +101,22 @@ Homing read_homing(TomlReader table) {
   return homing;
 }
 
-void read_tracks(TomlReader table, TomlReader motor, RobotBus& bus) {
+// The drives of one side: `kind` with their names, "track left" for a single one, else "track left 1" and so on.
+void read_side(TomlReader& table, std::string_view part, robot::Track side, DriveOnBus kind, RobotBus& bus) {
+  const std::string_view key = robot::kTrackNames[side];
+  std::vector<TomlReader> drives = table.one_or_more_tables(key);
+  if (drives.size() > kMaxDrivesASide)
+    table.fail(key, fmt::format("lists {} drives, but must list at most {}", drives.size(), kMaxDrivesASide));
+  kind.side = side;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    kind.name = fmt::format("{} {}", part, key);
+    if (drives.size() > 1) kind.name += fmt::format(" {}", i + 1);
+    bus.drives.push_back(read_drive(drives[i], kind));
+  }
+}
+
+// `part`: "track" or "wheel", which the drives turn.
+void read_sides(TomlReader table, std::string_view part, TomlReader motor, RobotBus& bus) {
   const double radius_m = motor.number("sprocket_radius_m", kPositive);
   DriveOnBus kind = read_kind(table, motor_turns(table) / (kTurn_rad * radius_m));
   kind.mode = read_mode(table, {DriveMode::profile_velocity, DriveMode::cyclic_velocity});
@@ -106,15 +125,25 @@ void read_tracks(TomlReader table, TomlReader motor, RobotBus& bus) {
   kind.quick_stop_deceleration = table.number("quick_stop_mps2", {.min = 0, .max = 1000, .open_min = true});
   bus.speed_loop_s = table.number("speed_loop_s", {.min = 0, .max = 1});
   check_numbers(table, kind);
-  bus.drives[0] = read_drive(table.table("left"), kind);
-  bus.drives[1] = read_drive(table.table("right"), kind);
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) read_side(table, part, side, kind, bus);
   table.finish();
-  if (longest_stop_s(bus) > kLongestStop_s) {
+  if (longest_stop_s(bus) > bus.stop_within_s) {
     table.fail("quick_stop_mps2",
-               fmt::format("lets a track run for {:.3f} s after the master fell silent (master_silence_s and a stop "
-                           "from {} m/s); it must stop within {} s",
-                           longest_stop_s(bus), kind.max_speed, kLongestStop_s));
+               fmt::format("lets a {} run for {:.3f} s after the master fell silent (master_silence_s and a stop "
+                           "from {} m/s); it must stop within {} s (can.stop_within_s)",
+                           part, longest_stop_s(bus), kind.max_speed, bus.stop_within_s));
   }
+}
+
+// A robot on wheels has its drives in [can.wheel], one on tracks in [can.track]: each as its running gear is called in
+// the rest of its description, so that messages name a part that the robot has. Otherwise the two tables are alike.
+void read_travel(TomlReader& table, TomlReader& file, RobotBus& bus) {
+  const std::string_view part = file.has("wheel") ? "wheel" : "track", other = file.has("wheel") ? "track" : "wheel";
+  if (table.has(other)) {
+    table.fail(other, fmt::format("is for a robot on {}s; the drives of this one, which has {}s, belong in [can.{}]",
+                                  other, part, part));
+  }
+  read_sides(table.table(part), part, file.table("drive"), bus);
 }
 
 void read_flippers(TomlReader table, TomlReader joint, TomlReader servo, RobotBus& bus) {
@@ -126,10 +155,22 @@ void read_flippers(TomlReader table, TomlReader joint, TomlReader servo, RobotBu
   kind.acceleration = table.number("acceleration_radps2", {.min = 0, .max = 1e4, .open_min = true});
   kind.quick_stop_deceleration = table.number("quick_stop_radps2", {.min = 0, .max = 1e4, .open_min = true});
   if (table.has("homing")) kind.homing = read_homing(table.table("homing"));
-  constexpr std::array kKeys = {"front_left", "front_right", "rear_left", "rear_right"};
+  const description::FlipperPairs pairs = description::read_flipper_pairs(joint);
+  constexpr std::array<std::string_view, robot::kFlipperCount> kKeys{"front_left", "front_right", "rear_left",
+                                                                     "rear_right"};
   for (std::size_t i = 0; i < kKeys.size(); ++i) {
-    DriveOnBus& drive = bus.drives[robot::kTrackCount + i] = read_drive(table.table(kKeys[i]), kind);
-    check_numbers(table, drive);
+    const auto flipper = static_cast<robot::Flipper>(i);
+    if (!(robot::is_front(flipper) ? pairs.front : pairs.rear)) {
+      if (table.has(kKeys[i])) table.fail(kKeys[i], "is a flipper that this robot has not: `pairs` in [flipper]");
+      continue;
+    }
+    kind.side = robot::side_of(flipper);
+    kind.flipper = flipper;
+    kind.name = fmt::format("flipper {}", kKeys[i]);
+    std::ranges::replace(kind.name, '_', ' ');
+    TomlReader one = table.table(kKeys[i]);
+    bus.drives.push_back(read_drive(one, kind));
+    check_numbers(table, bus.drives.back());
   }
   table.finish();
 }
@@ -176,8 +217,8 @@ void check_nodes(TomlReader& table, const RobotBus& bus) {
     if (!is_new) table.fail(key, fmt::format("has node {} twice: {} and {}", node, where->second, name));
   };
   take(bus.master, "the master", "master_node");
-  for (std::size_t i = 0; i < kDriveCount; ++i)
-    take(bus.drives[i].node, kDriveNames[i], is_track(i) ? "track" : "flipper");
+  for (const DriveOnBus& drive : bus.drives)
+    take(drive.node, drive.name, drive.is_flipper() ? "flipper" : table.has("wheel") ? "wheel" : "track");
   if (bus.inclinometer) take(bus.inclinometer->node, "inclinometer", "inclinometer");
   if (bus.gyro) take(bus.gyro->node, "gyro", "gyro");
 }
@@ -218,13 +259,15 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   bus.has_currents = !table.has("currents") || table.boolean("currents");
   bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
+  bus.stop_within_s = table.number_or("stop_within_s", bus.stop_within_s, kStopWithin);
 
   // Drives take speeds, limits and radius from the tables that the simulator reads too.
   bus.track_gauge_m = gauge_m(file);
-  read_tracks(table.table("track"), file.table("drive"), bus);
-  if (!file.has("flipper"))
-    table.fail("flipper", "has no [flipper] in this description: this library drives robots with four");
-  read_flippers(table.table("flipper"), file.table("flipper"), file.table("servo"), bus);
+  read_travel(table, file, bus);
+  if (file.has("flipper"))
+    read_flippers(table.table("flipper"), file.table("flipper"), file.table("servo"), bus);
+  else if (table.has("flipper"))
+    table.fail("flipper", "has drives for flippers, but this description has no [flipper]");
 
   // Optional sensors; finally, node ids must be unique.
   if (table.has("inclinometer")) bus.inclinometer = read_inclinometer(table.table("inclinometer"));
@@ -239,8 +282,17 @@ RobotBus load_robot_bus(const std::string& name_or_path) {
   return parse_robot_bus(file.text, file.path);
 }
 
+bool has_flippers(const RobotBus& bus) {
+  return std::ranges::any_of(bus.drives, &DriveOnBus::is_flipper);
+}
+
+std::size_t drives_of_side(const RobotBus& bus, robot::Track side) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      bus.drives, [side](const DriveOnBus& drive) { return !drive.is_flipper() && drive.side == side; }));
+}
+
 double longest_stop_s(const RobotBus& bus) {
-  const DriveOnBus& track = bus.drives[0];
+  const DriveOnBus& track = bus.drives.front();
   return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
 }
 

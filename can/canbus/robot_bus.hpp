@@ -7,26 +7,17 @@
 // Thread safety: values and pure functions, except load_robot_bus, which reads the environment and files.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "can/canopen/drive.hpp"
 #include "can/canopen/nmt.hpp"
 #include "robot/parts.hpp"
 
 namespace kenaf::canbus {
-
-inline constexpr std::size_t kDriveCount = std::size_t{robot::kTrackCount} + robot::kFlipperCount;
-// Order of the drives everywhere: track left, track right, flippers front left, front right, rear left, rear right.
-inline constexpr std::array<std::string_view, kDriveCount> kDriveNames = {"track left",         "track right",
-                                                                          "flipper front left", "flipper front right",
-                                                                          "flipper rear left",  "flipper rear right"};
-constexpr bool is_track(std::size_t drive) {
-  return drive < robot::kTrackCount;
-}
 
 // Units and range of a drive.
 struct DriveUnits {
@@ -47,13 +38,18 @@ struct Homing {
 };
 
 struct DriveOnBus {
+  std::string name;                       // in messages: "track left", "wheel right 2", "flipper front left"
+  robot::Track side;                      // of the robot
+  std::optional<robot::Flipper> flipper;  // that it moves; nullopt: it turns its side's track, or wheels of it
   canopen::NodeId node;
-  canopen::DriveMode mode;  // tracks: profile or cyclic velocity; flippers: profile or cyclic position
+  canopen::DriveMode mode;  // tracks, wheels: profile or cyclic velocity; flippers: profile or cyclic position
   DriveUnits units;
   double max_speed;                              // m/s or rad/s
   double acceleration, quick_stop_deceleration;  // m/s^2 or rad/s^2
   double min_position, max_position;             // rad; flippers only
   std::optional<Homing> homing;                  // flippers; nullopt: the encoder is absolute
+
+  bool is_flipper() const { return flipper.has_value(); }
 };
 
 struct InclinometerAxis {
@@ -75,26 +71,33 @@ struct GyroOnBus {
 };
 
 struct RobotBus {
-  std::string interface;      // "can0"
-  int bit_rate;               // bits per second, as the interface is configured; used for the bus load
-  canopen::NodeId master;     // the node id whose heartbeat the drives watch
-  double master_heartbeat_s;  // period of that heartbeat
-  double master_silence_s;    // the drives stop by themselves after this long without it
-  double node_heartbeat_s;    // period of the nodes' heartbeats
-  double answer_s;            // patience for each answer during set-up
-  bool has_currents = true;   // the drives measure their current
-  bool has_battery = true;    // the left track's drive measures the voltage of its supply
-  double track_gauge_m;       // between the tracks' centre lines; 0: not in the description
-  double speed_loop_s;        // time constant of the track drives' own speed control: for simulated ones only
-  std::array<DriveOnBus, kDriveCount> drives;
+  std::string interface;       // "can0"
+  int bit_rate;                // bits per second, as the interface is configured; used for the bus load
+  canopen::NodeId master;      // the node id whose heartbeat the drives watch
+  double master_heartbeat_s;   // period of that heartbeat
+  double master_silence_s;     // the drives stop by themselves after this long without it
+  double node_heartbeat_s;     // period of the nodes' heartbeats
+  double answer_s;             // patience for each answer during set-up
+  double stop_within_s = 0.2;  // limit of longest_stop_s()
+  bool has_currents = true;    // the drives measure their current
+  bool has_battery = true;     // the first drive measures the voltage of its supply
+  double track_gauge_m;        // between the tracks' centre lines; 0: not in the description
+  double speed_loop_s;         // time constant of the track drives' own speed control: for simulated ones only
+  // Those of the left side, at least one, front first; those of the right side, likewise; the flippers that the robot
+  // has, in the order of robot::Flipper. All of a side are commanded the same speed.
+  std::vector<DriveOnBus> drives;
   std::optional<InclinometerOnBus> inclinometer;
   std::optional<GyroOnBus> gyro;
 };
 
+bool has_flippers(const RobotBus& bus);
+// Returns how many drives turn the track or the wheels of this side: 1, or more.
+std::size_t drives_of_side(const RobotBus& bus, robot::Track side);
+
 // Takes a shipped name ("kenaf") or the path of a TOML file. Throws DescriptionError with file, line and column: no
 // table [can], a key that is missing, unknown or out of range, a node id used twice, values that contradict each other
-// (a target beyond a drive's 32-bit numbers; a silence shorter than two heartbeats; a stop longer than 0.2 s: see
-// longest_stop_s).
+// (a target beyond a drive's 32-bit numbers; a silence shorter than two heartbeats; a stop longer than stop_within_s:
+// see longest_stop_s).
 RobotBus load_robot_bus(const std::string& name_or_path);
 RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors);
 

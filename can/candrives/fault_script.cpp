@@ -100,12 +100,14 @@ NodeId take_node(Line& line, const canbus::RobotBus& bus) {
     if (!bus.gyro) line.fail("this robot has no gyro on its bus");
     return bus.gyro->node;
   }
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
-    if (line.take(canbus::kDriveNames[i])) return bus.drives[i].node;
+  std::vector<std::string_view> names;
+  for (const canbus::DriveOnBus& drive : bus.drives) {
+    if (line.take(drive.name)) return drive.node;
+    names.push_back(drive.name);
   }
   if (!line.take("node"))
-    line.fail(fmt::format("it must begin with node NUMBER, {}, inclinometer, gyro, all or bus",
-                          fmt::join(canbus::kDriveNames, ", ")));
+    line.fail(
+        fmt::format("it must begin with node NUMBER, {}, inclinometer, gyro, all or bus", fmt::join(names, ", ")));
   const std::vector<NodeId> nodes = nodes_of(bus);
   const auto node = static_cast<NodeId>(take_number(line, "a node", canopen::kMaxNode));
   if (!std::ranges::count(nodes, node))

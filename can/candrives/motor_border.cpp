@@ -20,12 +20,12 @@ DriveSetup drive_setup(const canbus::RobotBus& bus, std::size_t drive) {
   const canbus::DriveOnBus& on_bus = bus.drives[drive];
   const double counts_per_unit = std::abs(on_bus.units.counts_per_unit);
   return {.node = on_bus.node,
-          .name = std::string(canbus::kDriveNames[drive]),
+          .name = on_bus.name,
           .scale = {.counts_per_velocity_unit = counts_per_unit / std::abs(on_bus.units.velocity_per_unit),
                     .counts_per_acceleration_unit = counts_per_unit / on_bus.units.acceleration_per_unit,
                     .homing_max_lag = kHomingMaxLag_rad * counts_per_unit,
                     .home_offset_direction = on_bus.homing ? on_bus.homing->offset_direction : 1},
-          .absolute_encoder = !canbus::is_track(drive) && !on_bus.homing,
+          .absolute_encoder = on_bus.is_flipper() && !on_bus.homing,
           .has_current = bus.has_currents,
           .has_voltage = bus.has_battery};
 }
@@ -34,13 +34,13 @@ Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantStat
   const canbus::DriveOnBus& on_bus = bus.drives[drive];
   const canbus::DriveUnits& units = on_bus.units;
   Measured motor{.supply_v = state.battery_v};
-  if (canbus::is_track(drive)) {
-    motor.position = to_counts(units, state.track_m[drive]);
-    motor.velocity = state.track_mps[drive] * units.counts_per_unit;
-    motor.current_a = state.track_a[drive];
+  if (!on_bus.is_flipper()) {
+    motor.position = to_counts(units, state.track_m[on_bus.side]);
+    motor.velocity = state.track_mps[on_bus.side] * units.counts_per_unit;
+    motor.current_a = state.track_a[on_bus.side] / static_cast<double>(drives_of_side(bus, on_bus.side));
     return motor;
   }
-  const std::size_t flipper = drive - robot::kTrackCount;
+  const robot::Flipper flipper = *on_bus.flipper;
   const double angle = state.flipper_rad[flipper];
   const bool at_min = angle <= on_bus.min_position + kSwitchBeforeEnd_rad;
   const bool at_max = angle >= on_bus.max_position - kSwitchBeforeEnd_rad;
@@ -53,18 +53,19 @@ Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantStat
   return motor;
 }
 
-void command(const canbus::RobotBus& bus, std::size_t drive, const Drive& from, const Measured& motor,
-             PlantCommand& to) {
-  const canbus::DriveUnits& units = bus.drives[drive].units;
+void add_command(const canbus::RobotBus& bus, std::size_t drive, const Drive& from, const Measured& motor,
+                 PlantCommand& to) {
+  const canbus::DriveOnBus& on_bus = bus.drives[drive];
+  const canbus::DriveUnits& units = on_bus.units;
   const Demand& demand = from.demand();
-  if (!canbus::is_track(drive)) {
-    to.flipper_rad[drive - robot::kTrackCount] = (demand.position - units.zero_counts) / units.counts_per_unit;
+  if (on_bus.is_flipper()) {
+    to.flipper_rad[*on_bus.flipper] = (demand.position - units.zero_counts) / units.counts_per_unit;
     return;
   }
   double velocity = demand.velocity;
   if (from.is_powered() && from.holds_position())
     velocity += kTrackPositionGain_ps * (demand.position - motor.position);
-  to.track_mps[drive] = velocity / units.counts_per_unit;
+  to.track_mps[on_bus.side] += velocity / units.counts_per_unit / static_cast<double>(drives_of_side(bus, on_bus.side));
 }
 
 }  // namespace kenaf::candrives

@@ -16,10 +16,11 @@ DriveSetup drive_setup(const canbus::RobotBus& bus, std::size_t drive);
 inline constexpr double kSwitchBeforeEnd_rad = 0.001;
 Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantState& state);
 
-// Computes the command to the motor of `drive`. A track turns at the demanded speed, plus a correction towards the
-// demanded position in modes that hold one; without power its brake stops it. A flipper is held at its demand, and
-// without power where it was.
-void command(const canbus::RobotBus& bus, std::size_t drive, const Drive& from, const Measured& motor,
-             PlantCommand& to);
+// Adds the command of the motor of `drive` to one whose track speeds are 0 at first. A track turns at the demanded
+// speed, plus a correction towards the demanded position in modes that hold one; without power its brake stops it.
+// Several drives of a side are coupled by the ground or by a belt: the side turns at the mean of their speeds. A
+// flipper is held at its demand, and without power where it was.
+void add_command(const canbus::RobotBus& bus, std::size_t drive, const Drive& from, const Measured& motor,
+                 PlantCommand& to);
 
 }  // namespace kenaf::candrives

@@ -21,9 +21,9 @@ constexpr Time kMaxBehind = std::chrono::milliseconds(2);
 RobotSlaves::RobotSlaves(const canbus::RobotBus& bus, Plant& plant, Time start)
     : bus_(bus), plant_(&plant), next_step_(start + kStep) {
   const PlantState& state = plant.state();
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     auto drive = std::make_unique<Drive>(drive_setup(bus_, i), candrives::measure(bus_, i, state));
-    drives_[i] = drive.get();
+    drives_.push_back(drive.get());
     nodes_.push_back({std::move(drive), {}, start});
   }
   if (bus_.inclinometer) {
@@ -100,10 +100,11 @@ Time RobotSlaves::deadline() const {
 }
 
 void RobotSlaves::step() {
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  command_.track_mps = {};
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
     Drive& drive = *drives_[i];
     if (!nodes_[i].power_on_at) drive.step(kStep);
-    command(bus_, i, drive, candrives::measure(bus_, i, plant_->state()), command_);
+    add_command(bus_, i, drive, candrives::measure(bus_, i, plant_->state()), command_);
   }
   plant_->advance(kStep, command_);
   measure();
@@ -111,7 +112,7 @@ void RobotSlaves::step() {
 
 void RobotSlaves::measure() {
   const PlantState& state = plant_->state();
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) drives_[i]->measure(candrives::measure(bus_, i, state));
+  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i]->measure(candrives::measure(bus_, i, state));
   if (inclinometer_ != nullptr) inclinometer_->measure(state.roll_rad, state.pitch_rad);
   if (gyro_ != nullptr) gyro_->measure(state.yaw_rate_radps);
 }

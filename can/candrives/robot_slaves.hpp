@@ -63,7 +63,7 @@ class RobotSlaves {
   canbus::RobotBus bus_;
   Plant* plant_;
   std::vector<Node> nodes_;  // drives in their order, inclinometer, gyro
-  std::array<Drive*, canbus::kDriveCount> drives_{};
+  std::vector<Drive*> drives_;
   Inclinometer* inclinometer_ = nullptr;
   Gyro* gyro_ = nullptr;
   PlantCommand command_;

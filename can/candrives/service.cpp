@@ -56,7 +56,7 @@ Service::Service(const canbus::RobotBus& bus, Plant& plant, std::string where)
       now_(start_),
       slaves_(bus, plant, start_),
       faults_(start_) {
-  reported_.fill(PowerState::switch_on_disabled);
+  reported_.assign(bus.drives.size(), PowerState::switch_on_disabled);
 }
 
 void Service::plan(const PlannedFault& fault) {
@@ -153,11 +153,11 @@ void Service::read_input() {
 }
 
 void Service::report_states() {
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     const PowerState state = slaves_.drive(i).power_state();
     if (state == reported_[i] || !is_worth_a_line(state)) continue;
     reported_[i] = state;
-    say("{:.3f} s: {} (node {}): {}", std::chrono::duration<double>(now_ - start_).count(), canbus::kDriveNames[i],
+    say("{:.3f} s: {} (node {}): {}", std::chrono::duration<double>(now_ - start_).count(), bus_.drives[i].name,
         bus_.drives[i].node, describe(state));
   }
 }

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "can/candrives/fault_script.hpp"
 #include "can/candrives/robot_slaves.hpp"
@@ -43,7 +44,7 @@ class Service {
   canopen::Time start_, now_;  // time up to which the nodes have been served
   RobotSlaves slaves_;
   FaultScript faults_;
-  std::array<canopen::PowerState, canbus::kDriveCount> reported_{};
+  std::vector<canopen::PowerState> reported_;
   std::string input_;  // incomplete line
   bool input_open_ = true, said_slow_ = false;
   canopen::Time spent_{}, simulated_{};

@@ -71,16 +71,16 @@ double without_minus_zero(double value) {
 }
 
 std::string position_words(std::int64_t counts, std::size_t drive, const Network& network) {
-  const canbus::DriveUnits& units = network.bus().drives[drive].units;
-  const double position = without_minus_zero(position_from_drive(units, static_cast<std::int32_t>(counts)));
-  if (canbus::is_track(drive)) return fmt::format("{} counts ({:.4f} m)", counts, position);
+  const canbus::DriveOnBus& on_bus = network.bus().drives[drive];
+  const double position = without_minus_zero(position_from_drive(on_bus.units, static_cast<std::int32_t>(counts)));
+  if (!on_bus.is_flipper()) return fmt::format("{} counts ({:.4f} m)", counts, position);
   return fmt::format("{} counts ({:.2f} deg)", counts, position * 180 / std::numbers::pi);
 }
 
 std::string velocity_words(std::int64_t velocity, std::size_t drive, const Network& network) {
-  const canbus::DriveUnits& units = network.bus().drives[drive].units;
-  const double speed = without_minus_zero(velocity_from_drive(units, static_cast<std::int32_t>(velocity)));
-  return fmt::format("{:.3g} {}", speed, canbus::is_track(drive) ? "m/s" : "rad/s");
+  const canbus::DriveOnBus& on_bus = network.bus().drives[drive];
+  const double speed = without_minus_zero(velocity_from_drive(on_bus.units, static_cast<std::int32_t>(velocity)));
+  return fmt::format("{:.3g} {}", speed, on_bus.is_flipper() ? "rad/s" : "m/s");
 }
 
 // The statusword bits, beyond the state, that have the same meaning in every mode.

@@ -11,7 +11,7 @@ using canopen::PowerState;
 
 DriveRules::DriveRules(const Network& network, const CheckOptions& options, Findings& findings)
     : network_(network), options_(options), findings_(findings) {
-  for (std::size_t i = 0; i < drives_.size(); ++i) drives_[i].mode = network.bus().drives[i].mode;
+  for (const canbus::DriveOnBus& drive : network.bus().drives) drives_.push_back({.mode = drive.mode});
 }
 
 void DriveRules::on_frame(const LogFrame& logged, const PdoInForce* pdo) {
@@ -58,12 +58,12 @@ void DriveRules::check_order(const LogFrame& logged, const DriveCommand& command
   const DriveOrder order = order_of(command.controlword);
   if (could_be(logged, drive, [&](const Shown& shown) { return has_transition(shown.state(), order); })) return;
   findings_.add(logged, rule::controlword, "{} is commanded \"{}\" in the state \"{}\", which has no such transition",
-                canbus::kDriveNames[command.drive], describe(order), describe(drive.shown->state()));
+                name_of(command.drive), describe(order), describe(drive.shown->state()));
 }
 
 void DriveRules::check_fault_reset(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   if (order_of(command.controlword) != DriveOrder::fault_reset) return;
-  const std::string_view name = canbus::kDriveNames[command.drive];
+  const std::string_view name = name_of(command.drive);
   if (drive.command && order_of(drive.command->controlword) == DriveOrder::fault_reset)
     findings_.add(logged, rule::fault_reset, "bit 7 of {} stays 1: only its rising edge resets", name);
   if (could_be(logged, drive, [](const Shown& shown) { return shown.state() == PowerState::fault; })) return;
@@ -73,11 +73,11 @@ void DriveRules::check_fault_reset(const LogFrame& logged, const DriveCommand& c
 
 void DriveRules::check_target(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   if (!drive.shown) return;
-  const std::string_view name = canbus::kDriveNames[command.drive];
+  const std::string_view name = name_of(command.drive);
   const bool enabled =
       could_be(logged, drive, [](const Shown& shown) { return shown.state() == PowerState::operation_enabled; });
   const bool enables = order_of(command.controlword) == DriveOrder::enable;
-  if (canbus::is_track(command.drive)) {
+  if (!network_.bus().drives[command.drive].is_flipper()) {
     if (command.target == 0 || (enabled && enables && !drive.ended)) return;
     findings_.add(logged, rule::target, "{} gets a speed {}", name,
                   drive.ended ? "after its quick stop"
@@ -110,7 +110,7 @@ void DriveRules::check_set_point(const LogFrame& logged, const DriveCommand& com
     return acknowledged == asked;
   };
   if (could_be(logged, drive, fits)) return;
-  findings_.add(logged, rule::set_point, "{}: new set-point is {}", canbus::kDriveNames[command.drive],
+  findings_.add(logged, rule::set_point, "{}: new set-point is {}", name_of(command.drive),
                 asked ? "taken back before the drive has acknowledged it"
                       : "raised while the drive still acknowledges the one before");
 }
@@ -133,7 +133,7 @@ void DriveRules::on_status(const LogFrame& logged, const DriveStatus& status) {
 
 void DriveRules::check_transition(const LogFrame& logged, const DriveStatus& status, const Drive& drive) {
   const PowerState to = canopen::power_state_of(status.statusword);
-  const std::string_view name = canbus::kDriveNames[status.drive];
+  const std::string_view name = name_of(status.drive);
   if (to == PowerState::undefined) {
     findings_.add(logged, rule::statusword, "{} shows statusword {:#06x}, which is not a state", name,
                   status.statusword);

@@ -1,9 +1,10 @@
 // The rules of a drive's power states, set-points and targets. CiA 402-2.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "can/canlog/drive_frames.hpp"
 #include "can/canlog/findings.hpp"
@@ -47,10 +48,12 @@ class DriveRules {
   template <class Holds>
   bool could_be(const LogFrame& logged, const Drive& drive, Holds holds) const;
 
+  const std::string& name_of(std::size_t drive) const { return network_.bus().drives[drive].name; }
+
   const Network& network_;
   const CheckOptions& options_;
   Findings& findings_;
-  std::array<Drive, canbus::kDriveCount> drives_{};
+  std::vector<Drive> drives_;
   unsigned syncs_ = 0;
 };
 

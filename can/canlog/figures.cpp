@@ -106,7 +106,7 @@ void add_late_commands(const Log& log, const Network& network, const std::vector
     for (; cycle != cycles.end() && cycle + 1 != cycles.end() && (cycle + 1)->frame <= span.last; ++cycle) {
       if (cycle->clock_steps != (cycle + 1)->clock_steps) continue;
       ++figures.driven_cycles;
-      if (cycle->commanded.size() < canbus::kDriveCount) ++figures.late_commands;
+      if (cycle->commanded.size() < network.bus().drives.size()) ++figures.late_commands;
     }
   }
 }

@@ -1,7 +1,7 @@
 #include "can/canlog/loop_span.hpp"
 
-#include <array>
 #include <optional>
+#include <vector>
 
 #include "can/canlog/bus_state.hpp"
 #include "can/canlog/drive_frames.hpp"
@@ -43,8 +43,8 @@ bool is_motion(const DriveCommand& command, const Followed& drive) {
 std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
   // SDO writes may change a drive's mode, and what its PDOs contain.
   BusState bus(network);
-  std::array<Followed, canbus::kDriveCount> drives{};
-  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].mode = network.bus().drives[i].mode;
+  std::vector<Followed> drives;
+  for (const canbus::DriveOnBus& drive : network.bus().drives) drives.push_back({.mode = drive.mode});
 
   // A span reaches from the first command that moves a drive to the newest such command.
   std::vector<LoopSpan> spans;

@@ -45,9 +45,9 @@ Address address_of(std::uint16_t cob_id) {
 
 Network::Network(const canbus::RobotBus& bus) : bus_(bus) {
   names_[bus.master] = "master";
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const NodeId node = bus.drives[i].node;
-    names_[node] = canbus::kDriveNames[i];
+    names_[node] = bus.drives[i].name;
     const canbus::DrivePdos pdos = canbus::pdos_of(bus, i);
     add(pdos.state, node, i);
     if (pdos.has_effort) add(pdos.effort, node, i);
@@ -79,7 +79,7 @@ const KnownPdo* Network::pdo(std::uint16_t cob_id) const {
 }
 
 std::optional<std::size_t> Network::drive_of(NodeId node) const {
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     if (bus_.drives[i].node == node) return i;
   }
   return std::nullopt;

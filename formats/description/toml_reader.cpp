@@ -131,6 +131,15 @@ std::vector<TomlReader> TomlReader::tables(std::string_view key) {
   return out;
 }
 
+std::vector<TomlReader> TomlReader::one_or_more_tables(std::string_view key) {
+  const toml::node& found = node(key);
+  if (found.is_table()) return {table(key)};
+  if (!found.is_array()) fail(key, "must be a table, or a list of tables");
+  std::vector<TomlReader> out = tables(key);
+  if (out.empty()) fail(key, "is empty");
+  return out;
+}
+
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     if (std::find(read_.begin(), read_.end(), key.str()) == read_.end())

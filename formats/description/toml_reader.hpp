@@ -41,7 +41,8 @@ class TomlReader {
   Eigen::Vector3d vector3(std::string_view key, Range range = kAny);
   Eigen::Vector3d vector3_or(std::string_view key, const Eigen::Vector3d& fallback);
   TomlReader table(std::string_view key);
-  std::vector<TomlReader> tables(std::string_view key);  // an array of tables; empty if the key is missing
+  std::vector<TomlReader> tables(std::string_view key);              // an array of tables; empty if the key is missing
+  std::vector<TomlReader> one_or_more_tables(std::string_view key);  // a table, or an array of them that is not empty
 
   // Ignores the key, which another reader reads.
   void leave(std::string_view key) { read_.emplace_back(key); }

@@ -3,11 +3,11 @@
 //
 // An input is a list of items, each with a first byte: below 0xc0 a frame after that many eighths of a millisecond (two
 // bytes identifier, one byte length, data), else a wait of up to 128 ms, or a fault.
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "can/candrives/ideal_plant.hpp"
 #include "can/candrives/robot_slaves.hpp"
@@ -33,11 +33,10 @@ class WatchedPlant final : public Plant {
   void advance(canopen::Time step, const PlantCommand& command) override {
     const PlantState before = plant_.state();
     plant_.advance(step, command);
-    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
-      const bool track = canbus::is_track(i);
-      const std::size_t flipper = i - robot::kTrackCount;
-      const double moved =
-          track ? state().track_m[i] - before.track_m[i] : state().flipper_rad[flipper] - before.flipper_rad[flipper];
+    for (std::size_t i = 0; i < was_powered_.size(); ++i) {
+      const canbus::DriveOnBus& drive = bus_of_kenaf().drives[i];
+      const double moved = drive.is_flipper() ? state().flipper_rad[*drive.flipper] - before.flipper_rad[*drive.flipper]
+                                              : state().track_m[drive.side] - before.track_m[drive.side];
       check(std::isfinite(moved));
       // the step in which a ramp ends is the last that moves; where a motor stands may be rounded, in counts and back
       const bool powered = slaves->drive(i).is_powered();
@@ -50,7 +49,7 @@ class WatchedPlant final : public Plant {
 
  private:
   IdealPlant plant_;
-  std::array<bool, canbus::kDriveCount> was_powered_{};
+  std::vector<bool> was_powered_ = std::vector<bool>(bus_of_kenaf().drives.size());
 };
 
 }  // namespace

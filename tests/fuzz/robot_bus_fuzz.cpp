@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -39,12 +41,14 @@ void check_drive(const canbus::DriveOnBus& drive, bool track) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
     const canbus::RobotBus bus = canbus::parse_robot_bus({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
-    check(!bus.interface.empty() && canbus::longest_stop_s(bus) <= 0.2);
+    check(!bus.interface.empty() && canbus::longest_stop_s(bus) <= bus.stop_within_s && bus.stop_within_s <= 2);
     std::array<bool, canopen::kMaxNode + 1> taken{};
     taken[bus.master] = true;
-    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
-      check_drive(bus.drives[i], canbus::is_track(i));
-      check(!std::exchange(taken[bus.drives[i].node], true));
+    check(drives_of_side(bus, robot::kLeft) >= 1 && drives_of_side(bus, robot::kRight) >= 1);
+    std::set<std::string> names;
+    for (const canbus::DriveOnBus& drive : bus.drives) {
+      check_drive(drive, !drive.is_flipper());
+      check(!std::exchange(taken[drive.node], true) && names.insert(drive.name).second);
     }
     if (bus.gyro) check(bus.gyro->first_bit + bus.gyro->bits <= 64 && !std::exchange(taken[bus.gyro->node], true));
   } catch (const description::DescriptionError& error) {

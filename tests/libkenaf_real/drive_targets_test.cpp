@@ -14,14 +14,14 @@ namespace {
 
 canbus::RobotBus bus_with(DriveMode track, DriveMode flipper) {
   canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) bus.drives[i].mode = canbus::is_track(i) ? track : flipper;
+  for (canbus::DriveOnBus& drive : bus.drives) drive.mode = drive.is_flipper() ? flipper : track;
   return bus;
 }
 
 // All enabled, flippers at `counts`, no set-point acknowledged.
 ProcessImage image_at(const canbus::RobotBus& bus, std::int32_t counts) {
   ProcessImage image(bus);
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const std::int64_t values[] = {0x0637, counts};
     image.on_frame({pack(canbus::pdos_of(bus, i).state, bus.drives[i].node, values), canopen::Time(1)});
   }
@@ -36,9 +36,9 @@ TEST_CASE("Without a command flippers keep where they are, and tracks stand") {
   DriveTargets targets(bus, image);
   for (int k = 0; k < 10; ++k) {
     const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
-    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+    for (std::size_t i = 0; i < bus.drives.size(); ++i) {
       CHECK(orders[i].controlword == kControlEnable);
-      CHECK(orders[i].target == (canbus::is_track(i) ? 0 : 12345));
+      CHECK(orders[i].target == (bus.drives[i].is_flipper() ? 12345 : 0));
     }
   }
 }
@@ -86,7 +86,7 @@ TEST_CASE("A flipper that stands outside of its limits stays there until it is t
     DriveTargets targets(bus, image);
     for (int k = 0; k < 10; ++k) {
       const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
-      for (std::size_t i = robot::kTrackCount; i < canbus::kDriveCount; ++i) {
+      for (std::size_t i = robot::kTrackCount; i < bus.drives.size(); ++i) {
         CHECK(orders[i].controlword == kControlEnable);
         CHECK(orders[i].target == outside);
       }

@@ -72,7 +72,7 @@ TEST_CASE("A master that dies, or hangs, stops the robot within 0.14 s") {
 }
 
 TEST_CASE("A drive that falls silent is named, and the others stop at once") {
-  for (std::size_t drive = 0; drive < canbus::kDriveCount; ++drive) {
+  for (std::size_t drive = 0; drive < canbus::load_robot_bus("kenaf").drives.size(); ++drive) {
     RobotOnBus robot;
     robot.open();
     robot.run(30, drive_at(0.2, 0.2));
@@ -80,7 +80,7 @@ TEST_CASE("A drive that falls silent is named, and the others stop at once") {
     robot.wire.inject({FaultKind::silent, node});
     const Loss loss = drive_until_lost(robot);
     CHECK(loss.code == HRT_E_DEVICE);
-    CHECK_THAT(loss.text, Catch::Contains(std::string(canbus::kDriveNames[drive]) + " (node " + std::to_string(node) +
+    CHECK_THAT(loss.text, Catch::Contains(robot.description.drives[drive].name + " (node " + std::to_string(node) +
                                           ") has been silent for"));
     // 0.05 s of silence are five cycles
     CHECK(loss.cycles <= 6);

@@ -60,7 +60,7 @@ TEST_CASE("A program that was held up for longer than its drives wait for it say
       CHECK(error.code() == HRT_E_LINK);
       CHECK_THAT(error.what(), Catch::Contains("was held up for 0.3") && Catch::Contains("stopped by themselves"));
     }
-    CHECK(*words == std::vector<std::uint16_t>(canbus::kDriveCount, canopen::kControlQuickStop));
+    CHECK(*words == std::vector<std::uint16_t>(robot.description.drives.size(), canopen::kControlQuickStop));
     for (const candrives::LoggedFrame& one : robot.wire.log())
       CHECK_FALSE((one.at > begin + milliseconds(100) && one.frame.id == 0x77f));
     robot.transport.close();

@@ -79,7 +79,7 @@ struct RobotOnBus {
     return const_cast<candrives::SimulatedBus&>(wire).slaves().drive(drive).power_state();
   }
   bool all_are(canopen::PowerState state) const {
-    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+    for (std::size_t i = 0; i < description.drives.size(); ++i) {
       if (power(i) != state) return false;
     }
     return true;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "formats/description/description_error.hpp"
@@ -51,7 +53,8 @@ TEST_CASE("The shipped robot's bus is read as its description says") {
   CHECK(bus.bit_rate == 500'000);
   CHECK(bus.track_gauge_m == Approx(0.2));
   CHECK(bus.master == 127);
-  for (std::size_t i = 0; i < kDriveCount; ++i) CHECK(bus.drives[i].node == i + 1);
+  REQUIRE(bus.drives.size() == 6);
+  for (std::size_t i = 0; i < bus.drives.size(); ++i) CHECK(bus.drives[i].node == i + 1);
   CHECK(bus.drives[0].mode == DriveMode::profile_velocity);
   CHECK(bus.drives[5].mode == DriveMode::profile_position);
   REQUIRE(bus.inclinometer);
@@ -132,8 +135,95 @@ TEST_CASE("What the drive's 32 bits cannot hold is refused") {
              Catch::Contains("less than one"));
 }
 
-TEST_CASE("A description without a bus, or without flippers, says so") {
+TEST_CASE("A description without a bus says so") {
   const std::string text = kenaf_toml();
   CHECK_THAT(error_of(text.substr(0, text.find("[can]"))), Catch::Contains("has no table [can]"));
-  CHECK_THROWS_WITH(load_robot_bus("marmotte"), Catch::Contains("has no table [can]"));
+}
+
+namespace {
+
+// From the line that begins with `from` up to the one that begins with `to`, which stays.
+std::string without(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t begin = text.find("\n" + from);
+  REQUIRE(begin != std::string::npos);
+  const std::size_t end = text.find("\n" + to, begin + 1);
+  REQUIRE(end != std::string::npos);
+  return text.erase(begin, end - begin);
+}
+
+std::string kenaf_without_flippers() {
+  return without(without(kenaf_toml(), "[flipper]", "[battery]"), "[can.flipper]", "[can.inclinometer]");
+}
+
+std::vector<std::string> names_of(const RobotBus& bus) {
+  std::vector<std::string> names;
+  for (const DriveOnBus& drive : bus.drives) names.push_back(drive.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("The drives are those of the parts that the robot has") {
+  CHECK(names_of(load_robot_bus("kenaf")) == Names{"track left", "track right", "flipper front left",
+                                                   "flipper front right", "flipper rear left", "flipper rear right"});
+  const RobotBus bare = parse_robot_bus(kenaf_without_flippers(), "k.toml");
+  CHECK(names_of(bare) == Names{"track left", "track right"});
+  CHECK_FALSE(has_flippers(bare));
+
+  // front flippers alone
+  const std::string both = kenaf_toml();
+  std::string front = both;
+  front.replace(both.find("[flipper]"), 9, "[flipper]\npairs = \"front\"");
+  CHECK_THAT(error_of(front), Catch::Contains("can.flipper.rear_left is a flipper that this robot has not"));
+  const RobotBus pair = parse_robot_bus(without(front, "rear_left", "\n[can.inclinometer]"), "k.toml");
+  CHECK(names_of(pair) == Names{"track left", "track right", "flipper front left", "flipper front right"});
+  CHECK(has_flippers(pair));
+  front.replace(front.find("\"front\""), 7, "\"all\"");
+  CHECK_THAT(error_of(front), Catch::Contains("flipper.pairs is \"all\", but must be"));
+}
+
+TEST_CASE("Drives for parts that the robot has not are refused") {
+  std::string text = without(kenaf_toml(), "[flipper]", "[battery]");
+  CHECK_THAT(error_of(text), Catch::Contains("can.flipper has drives for flippers, but this description has no"));
+  text = with("[can.track]", "[can.wheel]");
+  CHECK_THAT(error_of(text), Catch::Contains("can.wheel is for a robot on wheels; the drives of this one, which has "
+                                             "tracks, belong in [can.track]"));
+}
+
+TEST_CASE("A side may have several drives, front first, each with its own direction") {
+  const RobotBus bus = parse_robot_bus(
+      with("left = { node = 1, direction = 1 }", "left = [{ node = 1, direction = 1 }, { node = 9, direction = -1 }]"),
+      "k.toml");
+  CHECK(bus.drives.size() == 7);
+  CHECK(bus.drives[0].name == "track left 1");
+  CHECK(bus.drives[1].name == "track left 2");
+  CHECK(bus.drives[1].node == 9);
+  CHECK(bus.drives[1].side == robot::kLeft);
+  CHECK(bus.drives[1].units.counts_per_unit == -bus.drives[0].units.counts_per_unit);
+  CHECK(bus.drives[2].name == "track right");
+  CHECK(drives_of_side(bus, robot::kLeft) == 2);
+  CHECK(drives_of_side(bus, robot::kRight) == 1);
+
+  const auto left = [](const std::string& list) {
+    return with("left = { node = 1, direction = 1 }", "left = " + list);
+  };
+  CHECK_THAT(error_of(left("[]")), Catch::Contains("can.track.left is empty"));
+  CHECK_THAT(error_of(left("3")), Catch::Contains("can.track.left must be a table, or a list of tables"));
+  CHECK_THAT(error_of(left("[3]")), Catch::Contains("must hold tables only"));
+  CHECK_THAT(error_of(left("[{ node = 1, direction = 1 }, { node = 1, direction = 1 }]")),
+             Catch::Contains("has node 1 twice: track left 1 and track left 2"));
+  std::string many = "[";
+  for (int node = 20; node < 29; ++node) many += "{ node = " + std::to_string(node) + ", direction = 1 }, ";
+  CHECK_THAT(error_of(left(many + "]")), Catch::Contains("lists 9 drives, but must list at most 8"));
+}
+
+TEST_CASE("A robot that its ground cannot stop within 0.2 s says how long it takes") {
+  // 0.1 s of silence, and 0.5 m/s at 2.5 m/s^2: 0.3 s
+  const std::string slow = with("quick_stop_mps2 = 12.5", "quick_stop_mps2 = 2.5");
+  CHECK_THAT(error_of(slow), Catch::Contains("must stop within 0.2 s (can.stop_within_s)"));
+  std::string says = slow;
+  says.replace(says.find("answer_s = 0.5"), 14, "answer_s = 0.5\nstop_within_s = 0.31");
+  CHECK(longest_stop_s(parse_robot_bus(says, "k.toml")) == Approx(0.3));
 }

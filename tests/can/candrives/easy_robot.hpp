@@ -3,6 +3,7 @@
 // 7 inclinometer, 8 gyro; left is direction +1, right -1. And frames as candump writes them.
 #pragma once
 
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -21,11 +22,16 @@ inline canbus::RobotBus easy_robot() {
   bus.master_silence_s = 0.1;
   bus.node_heartbeat_s = 0.1;
   bus.answer_s = 0.5;
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+  constexpr std::array kNames{"track left",          "track right",       "flipper front left",
+                              "flipper front right", "flipper rear left", "flipper rear right"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
     const double direction = i % 2 == 0 ? 1 : -1;
-    canbus::DriveOnBus& drive = bus.drives[i];
+    canbus::DriveOnBus& drive = bus.drives.emplace_back();
+    drive.name = kNames[i];
+    drive.side = i % 2 == 0 ? robot::kLeft : robot::kRight;
+    if (i >= robot::kTrackCount) drive.flipper = static_cast<robot::Flipper>(i - robot::kTrackCount);
     drive.node = static_cast<canopen::NodeId>(i + 1);
-    drive.mode = canbus::is_track(i) ? canopen::DriveMode::profile_velocity : canopen::DriveMode::profile_position;
+    drive.mode = drive.is_flipper() ? canopen::DriveMode::profile_position : canopen::DriveMode::profile_velocity;
     drive.units = {.counts_per_unit = 10'000 * direction,
                    .velocity_per_unit = 10'000 * direction,
                    .acceleration_per_unit = 10'000};

@@ -14,7 +14,9 @@ constexpr std::int64_t kReached = 1 << 10, kAttained = 1 << 12, kError = 1 << 13
 
 canbus::RobotBus with_homing() {
   canbus::RobotBus bus = easy_robot();
-  for (std::size_t i = robot::kTrackCount; i < canbus::kDriveCount; ++i) bus.drives[i].homing = canbus::Homing{};
+  for (canbus::DriveOnBus& drive : bus.drives) {
+    if (drive.is_flipper()) drive.homing = canbus::Homing{};
+  }
   return bus;
 }
 
