@@ -53,9 +53,11 @@ struct RobotOnBus {
   hrt_config config = hrt::default_config();
   CanTransport transport;
 
-  explicit RobotOnBus(const std::string& robot = "kenaf")
+  explicit RobotOnBus(const std::string& robot = "kenaf") : RobotOnBus(robot, canbus::load_robot_bus(robot)) {}
+  // With all of `on_wire` on the bus, which may be more than the description names.
+  RobotOnBus(const std::string& robot, const canbus::RobotBus& on_wire)
       : description(canbus::load_robot_bus(robot)),
-        wire(description, plant),
+        wire(on_wire, plant),
         transport([this](const std::string&, std::span<const std::uint16_t>) {
           wire.open_socket();
           return std::make_unique<BorrowedBus>(wire);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR
+# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR ROBOT GAUGE_MM
 #
 # The square example over libkenaf_sim, relay and world server; and over libkenaf_real, SocketCAN and kenaf-candrives, whose
 # drives turn the tracks of the same physics.
@@ -10,11 +10,12 @@ set -uo pipefail
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 . "$here/waiting.sh"
 with_vcan=$1 bin=$2
+export KENAF_ROBOT=$3 KENAF_TRACK_GAUGE_MM=$4
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "square_test: $*" >&2; exit 1; }
 
-"$bin/kenaf-relayd" --embedded --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
+"$bin/kenaf-relayd" --embedded --robot "$KENAF_ROBOT" --class "USARBot.$KENAF_ROBOT" --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
 wait_until 20 [ -s "$work/port" ]
 KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
 
@@ -24,7 +25,7 @@ cat >"$work/on_bus.sh" <<'END'
 results=$PWD; shift
 cd "$(mktemp -d)" || exit 1
 candump -L vcan0 >bus.log & listener=$!
-"$1/kenaf-candrives" --interface vcan0 --log real.csv >drives.log 2>&1 & drives=$!
+"$1/kenaf-candrives" --interface vcan0 --robot "$KENAF_ROBOT" --log real.csv >drives.log 2>&1 & drives=$!
 wait_until 30 holds drives.log 'nodes on vcan0'
 KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 "$1/square_real"; status=$?
 pause 1
@@ -38,4 +39,4 @@ mkdir "$work/bus" && cd "$work/bus" || exit 1
 cat drives.log
 
 "$bin/compare_paths" "$work/sim.csv" real.csv 5 1 || fail "2: the paths differ by more than 5 mm and 1 degree"
-"$bin/kenaf-canlog" --robot kenaf --check --figures bus.log || fail "3: kenaf-canlog"
+"$bin/kenaf-canlog" --robot "$KENAF_ROBOT" --check --figures bus.log || fail "3: kenaf-canlog"
