@@ -36,10 +36,17 @@ foreach(library real sim)
     COMPONENT development)
 endforeach()
 
+# A project that has Kenaf as a part of it makes its own packages.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  return()
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)  # a package for each component
-set(CPACK_COMPONENTS_ALL library development data programs)
+set(CPACK_COMPONENTS_ALL library development data)
+if(KENAF_BUILD_SIMULATOR)  # otherwise the programs are tools of developers
+  list(APPEND CPACK_COMPONENTS_ALL programs)
+endif()
 set(CPACK_PACKAGE_CONTACT "Kenaf maintainers <maintainers@kenaf.example>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")

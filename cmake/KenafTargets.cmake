@@ -10,9 +10,9 @@ set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_C_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
-set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
-set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/lib")
 
 # Contracted multiply-adds would let the same run differ between compilers and processors.
 add_compile_options(-ffp-contract=off)
@@ -86,6 +86,11 @@ function(kenaf_room name)
   target_link_libraries(${name} PRIVATE kenaf_warnings)
 endfunction()
 
+# toml++ (KenafDependencies.cmake), for all rooms that read TOML.
+add_library(kenaf_toml STATIC "${PROJECT_SOURCE_DIR}/cmake/tomlplusplus.cpp")
+target_include_directories(kenaf_toml SYSTEM PUBLIC "${KENAF_TOML_FOLDER}")
+target_compile_definitions(kenaf_toml PUBLIC TOML_HEADER_ONLY=0)
+
 # kenaf_calculates(NAME): a room of long calculations, which are optimised under a sanitizer too. All else is not: it takes
 # a third of the time to compile, and waits for others more than for itself.
 function(kenaf_calculates name)
@@ -158,12 +163,19 @@ function(kenaf_test_headers)
   file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp" "int main() {}\n")
   add_executable(kenaf_test_headers "${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp")
   kenaf_test_settings(kenaf_test_headers)
-  target_link_libraries(kenaf_test_headers PRIVATE Eigen3::Eigen)
-  kenaf_precompile(kenaf_test_headers catch2/catch.hpp Eigen/Geometry)
+  set(headers catch2/catch.hpp)
+  if(KENAF_BUILD_SIMULATOR)
+    target_link_libraries(kenaf_test_headers PRIVATE Eigen3::Eigen)
+    list(APPEND headers Eigen/Geometry)
+  endif()
+  kenaf_precompile(kenaf_test_headers ${headers})
 endfunction()
 
 # What all tests are compiled with. Precompiled headers serve where these are the same.
 function(kenaf_test_settings name)
+  if(Catch2_VERSION VERSION_GREATER_EQUAL 3)
+    target_include_directories(${name} SYSTEM PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/catch2_v3")
+  endif()
   target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain Threads::Threads kenaf_warnings)
   target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # what is tested is optimised; optimising the tests themselves too takes twice as long to compile

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -36,12 +37,17 @@ constexpr std::array<std::string_view, 11> kTypeNames{"GroundTruth", "INS",     
                                                       "Odometry",    "Tachometer", "Sonar", "RangeScanner",
                                                       "GPS",         "Touch",      "Drives"};
 
+Eigen::Vector3d vector_at(TomlReader& table, std::string_view key, Range range = description::kAny) {
+  const std::array<double, 3> components = table.vector3(key, range);
+  return Eigen::Vector3d::Map(components.data());
+}
+
 BodyDescription read_body(TomlReader table) {
   BodyDescription body{
       .mass_kg = table.number("mass_kg", kPositive),
-      .size_m = table.vector3("size_m", kPositive),
-      .p_BBcm_m = table.vector3("center_of_mass_m"),
-      .inertia_kgm2 = table.vector3("inertia_kgm2", kPositive),
+      .size_m = vector_at(table, "size_m", kPositive),
+      .p_BBcm_m = vector_at(table, "center_of_mass_m"),
+      .inertia_kgm2 = vector_at(table, "inertia_kgm2", kPositive),
       .friction = table.number("friction", kFriction),
   };
   // No rigid body has a moment of inertia larger than the sum of the two others.
@@ -57,7 +63,7 @@ TrackDescription read_track(TomlReader table) {
       .length_m = table.number("length_m", kPositive),
       .end_radius_m = table.number("end_radius_m", kPositive),
       .width_m = table.number("width_m", kPositive),
-      .p_BT_m = table.vector3("left_center_m"),
+      .p_BT_m = vector_at(table, "left_center_m"),
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .pieces = table.integer("pieces", 1, 32),
@@ -77,7 +83,7 @@ TrackDescription read_wheel(TomlReader& table) {
       .length_m = 2 * radius_m,
       .end_radius_m = radius_m,
       .width_m = table.number("width_m", kPositive),
-      .p_BT_m = table.vector3("left_center_m"),
+      .p_BT_m = vector_at(table, "left_center_m"),
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .pieces = 1,
@@ -90,7 +96,7 @@ TrackDescription read_wheel(TomlReader& table) {
 
 CasterDescription read_caster(TomlReader& table) {
   CasterDescription caster{
-      .p_BC_m = table.vector3("center_m"),
+      .p_BC_m = vector_at(table, "center_m"),
       .radius_m = table.number("radius_m", kPositive),
       .width_m = table.number("width_m", kPositive),
       .friction = table.number("friction", kFriction),
@@ -146,7 +152,7 @@ FlipperDescription read_flipper(TomlReader table) {
       .pivot_radius_m = table.number("pivot_radius_m", kPositive),
       .tip_radius_m = table.number("tip_radius_m", kPositive),
       .width_m = table.number("width_m", kPositive),
-      .p_BPivot_m = table.vector3("front_left_pivot_m"),
+      .p_BPivot_m = vector_at(table, "front_left_pivot_m"),
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .min_angle_rad = table.number("min_angle_rad", {.min = -2 * pi, .max = 0}),
@@ -187,8 +193,10 @@ BatteryDescription read_battery(TomlReader table) {
 }
 
 Pose read_mount(TomlReader& table) {
-  return {table.vector3_or("mount_m", Eigen::Vector3d::Zero()),
-          rotation_from(table.vector3_or("mount_rpy_rad", Eigen::Vector3d::Zero()))};
+  const auto vector_or_zero = [&table](std::string_view key) -> Eigen::Vector3d {
+    return table.has(key) ? vector_at(table, key) : Eigen::Vector3d::Zero();
+  };
+  return {vector_or_zero("mount_m"), rotation_from(vector_or_zero("mount_rpy_rad"))};
 }
 
 SensorDescription read_sensor(TomlReader& table) {

@@ -225,10 +225,10 @@ void check_nodes(TomlReader& table, const RobotBus& bus) {
 
 // Between the tracks, or the wheels in the mean; 0 if the description has neither.
 double gauge_m(TomlReader& file) {
-  if (file.has("track")) return 2 * file.table("track").vector3("left_center_m").y();
+  if (file.has("track")) return 2 * file.table("track").vector3("left_center_m")[1];
   std::vector<TomlReader> wheels = file.tables("wheel");
   double sum_m = 0;
-  for (TomlReader& wheel : wheels) sum_m += 2 * wheel.vector3("left_center_m").y();
+  for (TomlReader& wheel : wheels) sum_m += 2 * wheel.vector3("left_center_m")[1];
   return wheels.empty() ? 0 : sum_m / static_cast<double>(wheels.size());
 }
 

@@ -6,11 +6,11 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "can/canbus/socket_bus.hpp"
-#include "can/candrives/ideal_plant.hpp"
-#include "can/candrives/path_log.hpp"
-#include "can/candrives/robot_plant.hpp"
+#include "can/candrives/motors.hpp"
 #include "can/candrives/service.hpp"
 
 namespace {
@@ -33,9 +33,8 @@ void stop_on_signals() {
 }
 
 struct Options {
-  std::string interface, robot = "kenaf", world = "flat", log;
-  bool ideal = false;
-  double time_step_s = physics::PhysicsSettings{}.time_step_s;
+  std::string interface;
+  candrives::MotorOptions motors;
   std::vector<std::string> faults;
 };
 
@@ -48,7 +47,6 @@ WHAT: silent, power loss, fault CODE, following error, deaf, sdo abort, sdo late
 As: --fault "node 3 silent at 5" --fault "track left fault 0x2310 0.5 after motion")";
 
 std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
-  // Ideal motors exclude the options of the physics.
   Options options;
   CLI::App app(
       "The drives, inclinometer and gyro of a robot as CANopen slaves (CiA 402, CiA 410) on a CAN interface.\n"
@@ -56,19 +54,9 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
       "kenaf-candrives");
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
-  app.add_option("--robot", options.robot, "Robot: a shipped name or a TOML file with a [can] table")
+  app.add_option("--robot", options.motors.robot, "Robot: a shipped name or a TOML file with a [can] table")
       ->capture_default_str();
-  auto* world = app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
-  auto* ideal = app.add_flag("--ideal", options.ideal,
-                             "No physics: motors that follow exactly, tracks that never slip, level ground")
-                    ->excludes(world);
-  app.add_option("--time-step", options.time_step_s,
-                 "Physics time step in seconds; larger ones need less processor time")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0001, 0.01))
-      ->excludes(ideal);
-  app.add_option("--log", options.log, "Write the true position of the robot to this CSV file, a line every 10 ms")
-      ->excludes(ideal);
+  candrives::add_motor_options(app, options.motors);
   app.add_option("--fault", options.faults, kFaultHelp)->take_all();
   try {
     app.parse(argc, argv);
@@ -81,33 +69,15 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
 
 void run(const Options& options) {
   // Read everything that may be wrong before touching the bus.
-  const canbus::RobotBus bus = canbus::load_robot_bus(options.robot);
+  const canbus::RobotBus bus = canbus::load_robot_bus(options.motors.robot);
   const std::string interface = options.interface.empty() ? bus.interface : options.interface;
   std::vector<candrives::PlannedFault> faults;
   for (const std::string& words : options.faults) faults.push_back(candrives::parse_fault(words, bus));
 
-  // The plant: ideal motors with the robot's gauge, or the robot in a simulated world, whose path may be logged.
-  std::optional<candrives::PathLog> log;
-  std::unique_ptr<candrives::Plant> plant;
-  std::string where = interface + ": robot " + options.robot;
-  if (options.ideal) {
-    auto ideal = std::make_unique<candrives::IdealPlant>();
-    ideal->set_gauge(physics::load_robot(options.robot).track_gauge_m());
-    plant = std::move(ideal);
-    where += " with ideal motors";
-  } else {
-    auto robot =
-        std::make_unique<candrives::RobotPlant>(options.robot, options.world, bus.speed_loop_s, options.time_step_s);
-    if (!options.log.empty()) {
-      log.emplace(options.log);
-      robot->on_step = [&log, robot = robot.get()] { log->write(robot->time_s(), [robot] { return robot->truth(); }); };
-    }
-    plant = std::move(robot);
-    where += " in world " + options.world;
-  }
+  const candrives::Motors motors = candrives::make_motors(options.motors, bus);
 
   // Serve the bus until a signal. The service reopens the socket as the interface comes and goes.
-  candrives::Service service(bus, *plant, where);
+  candrives::Service service(bus, *motors.plant, interface + ": " + motors.in_words);
   for (const auto& fault : faults) service.plan(fault);
   service.run([&] { return std::make_unique<canbus::SocketBus>(interface); }, stop_asked);
 }

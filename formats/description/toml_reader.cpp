@@ -105,12 +105,9 @@ std::vector<std::string> TomlReader::texts(std::string_view key, std::size_t min
   return out;
 }
 
-Eigen::Vector3d TomlReader::vector3(std::string_view key, Range range) {
-  return Eigen::Vector3d::Map(numbers(key, 3, range).data());
-}
-
-Eigen::Vector3d TomlReader::vector3_or(std::string_view key, const Eigen::Vector3d& fallback) {
-  return has(key) ? vector3(key) : fallback;
+std::array<double, 3> TomlReader::vector3(std::string_view key, Range range) {
+  const std::vector<double> components = numbers(key, 3, range);
+  return {components[0], components[1], components[2]};
 }
 
 TomlReader TomlReader::table(std::string_view key) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <toml++/toml.h>
-#include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -38,8 +38,7 @@ class TomlReader {
   std::string text(std::string_view key);
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range = kAny);  // a list of so many
   std::vector<std::string> texts(std::string_view key, std::size_t min, std::size_t max);    // a list of min to max
-  Eigen::Vector3d vector3(std::string_view key, Range range = kAny);
-  Eigen::Vector3d vector3_or(std::string_view key, const Eigen::Vector3d& fallback);
+  std::array<double, 3> vector3(std::string_view key, Range range = kAny);
   TomlReader table(std::string_view key);
   std::vector<TomlReader> tables(std::string_view key);              // an array of tables; empty if the key is missing
   std::vector<TomlReader> one_or_more_tables(std::string_view key);  // a table, or an array of them that is not empty

@@ -91,6 +91,16 @@ extern "C" {
 #define hrt_kenaf_init hrt_kenaf_init_abi1
 #define hrt_kenaf_init_with hrt_kenaf_init_with_abi1
 
+/* This header is C89 and C++98: of later standards it needs <stdint.h> alone, which has the types of fixed size that a
+ * binary interface needs, and which every compiler for Linux brings for every standard. C89 has no `inline`. */
+#if defined(__cplusplus) || (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L)
+#define HRT_INLINE static inline
+#elif defined(__GNUC__)
+#define HRT_INLINE static __inline__
+#else
+#define HRT_INLINE static
+#endif
+
 /* Return values. */
 enum {
   HRT_OK = 0,
@@ -190,7 +200,7 @@ int hrt_config_fill(hrt_config* config);
 int hrt_config_load(hrt_config* config);
 
 /* Returns the built-in defaults, to be changed and passed to hrt_kenaf_init_with. */
-static inline hrt_config hrt_config_default(void) {
+HRT_INLINE hrt_config hrt_config_default(void) {
   hrt_config config;
   memset(&config, 0, sizeof config);
   config.size = (uint32_t)sizeof config;
@@ -349,7 +359,7 @@ typedef struct hrt_state {
 } hrt_state;
 
 /* Returns an empty state for hrt_get_state. */
-static inline hrt_state hrt_state_init(void) {
+HRT_INLINE hrt_state hrt_state_init(void) {
   hrt_state state;
   memset(&state, 0, sizeof state);
   state.size = (uint32_t)sizeof state;
@@ -425,7 +435,7 @@ typedef struct hrt_picture {
 
 /* Returns an empty hrt_picture for hrt_get_picture: its number is 0, so that the first call gets any picture. Use one
  * for each camera and loop, and a new one after hrt_kenaf_init, because cameras restart their counts. */
-static inline hrt_picture hrt_picture_init(void) {
+HRT_INLINE hrt_picture hrt_picture_init(void) {
   hrt_picture picture;
   memset(&picture, 0, sizeof picture);
   picture.size = (uint32_t)sizeof picture;

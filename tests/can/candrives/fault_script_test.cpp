@@ -8,7 +8,7 @@
 using namespace kenaf;
 using namespace kenaf::candrives;
 using namespace std::chrono_literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
