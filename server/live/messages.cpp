@@ -97,6 +97,16 @@ void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge>
   out.close('}');
 }
 
+void write_pauser(Writer& out, const world_server::Pauser& pauser) {
+  out.key("paused_by").open('{');
+  if (pauser.page != world_server::OperatorId{0}) {
+    out.key("operator").integer(static_cast<std::uint32_t>(pauser.page));
+  } else if (!pauser.program.empty()) {
+    out.key("program").text(pauser.program);
+  }
+  out.close('}');
+}
+
 }  // namespace
 
 std::string hello_message(world_server::OperatorId you, std::uint32_t server, std::string_view world,
@@ -137,6 +147,7 @@ std::string state_message(const WorldState& state, std::uint64_t number, double 
   Writer out;
   out.open('{').key("type").text("state").key("n").integer(number);
   out.key("t").number(state.time_s).key("step").integer(state.step).key("paused").boolean(state.paused);
+  if (state.paused) write_pauser(out, state.pauser);
   out.key("speed").number(state.speed, 3).key("reached").number(reached, 3).key("viewers").integer(viewers);
   out.key("robots").open('[');
   for (const RobotState& robot : state.robots) write_robot(out, robot, frames);

@@ -18,12 +18,12 @@ struct CarryOut {
   world_server::OperatorId who;
 
   std::string operator()(const PauseRequest& request) const {
-    simulation.set_paused(request.on);
+    simulation.set_paused(request.on, {who, {}});
     return {};
   }
   std::string operator()(const StepRequest& request) const {
     if (simulation.robot_count() == 0) return reply("step", "there is no robot, so time does not advance");
-    if (!simulation.begin_steps(0, simulation.steps_for(request.time_s)))
+    if (!simulation.begin_steps(0, simulation.steps_for(request.time_s), {who, {}}))
       return reply("step", "too many steps are already waiting");
     return {};
   }

@@ -330,10 +330,10 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
   return {true, std::nullopt};
 }
 
-bool Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
+bool Simulation::begin_steps(std::uint32_t session, std::uint64_t steps, Pauser by) {
   constexpr std::size_t kMostWaiting = 1000;
   if (step_requests_.size() >= kMostWaiting) return false;
-  set_paused(true);
+  set_paused(true, std::move(by));
   const std::uint64_t from = step_requests_.empty() ? world.step_count() : step_requests_.back().until_step;
   step_requests_.push_back({session, from + steps});
   return true;
@@ -372,9 +372,10 @@ void Simulation::tell_of_crowd() {
                world.pair_count());
 }
 
-void Simulation::set_paused(bool paused) {
+void Simulation::set_paused(bool paused, Pauser by) {
   if (clock.paused() == paused) return;
   clock.set_paused(paused);
+  pauser = paused ? std::move(by) : Pauser{};
   // While time is stopped no output falls due, so a client would never learn the reason for the silence.
   for (const auto& session : sessions) {
     if (session->robot && session->extended && session->schedule.frame() > 0) write_status(*this, *session);

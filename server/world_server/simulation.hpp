@@ -34,6 +34,13 @@ struct WorldObject {
   bool permanent;  // KillAll keeps it
 };
 
+// Who paused the world: an operator at a page, or a program, by its robot's name, or its address if it has none.
+// Neither: unknown.
+struct Pauser {
+  OperatorId page{0};
+  std::string program;
+};
+
 struct Simulation {
   // Throws std::runtime_error (DescriptionError) with a text for the user.
   explicit Simulation(const ServerOptions& options);
@@ -76,7 +83,7 @@ struct Simulation {
 
   // CONTROL {Type Step}: runs this many steps, then pauses and answers. `session`: the session to answer; 0: none.
   // Returns false if the queue of steps is full.
-  bool begin_steps(std::uint32_t session, std::uint64_t steps);
+  bool begin_steps(std::uint32_t session, std::uint64_t steps, Pauser by = {});
   // Calls `then` once, when the world has made `step` steps in total: at once if it already has. Earlier if the world
   // is reset, because time restarts. Replaces the previous request of the same owner. The world waits for the call,
   // which must take only microseconds.
@@ -84,8 +91,8 @@ struct Simulation {
 
   // CONTROL {Type Reset}
   void reset();
-  // Pauses or resumes, and informs every client that understands it.
-  void set_paused(bool paused);
+  // Pauses or resumes, and informs every client that understands it. A world that is paused keeps its first `by`.
+  void set_paused(bool paused, Pauser by = {});
 
   const ServerOptions options;
   const Dialect dialect;
@@ -96,6 +103,7 @@ struct Simulation {
   const std::vector<physics::BoxId> loose_boxes;  // the movable ones of the world's description
   std::vector<physics::SensorSample> samples;     // reused by every output
   double wall_s = 0;                              // of the present call
+  Pauser pauser;                                  // while the clock is paused
   protocol::LogLimiter connection_log{20, 0.5};   // for robots that come and go
 
  private:

@@ -15,6 +15,10 @@ constexpr double kLongestCommandTimeout_s = 3600;
 constexpr double kMostDecimals = 15;
 constexpr std::size_t kLongestOwner = 64;
 
+Pauser pauser_of(const Session& session) {
+  return {OperatorId{0}, session.robot ? session.robot->name : session.peer};
+}
+
 Reason step(Simulation& simulation, Session& session, const MessageView& message) {
   const double most_steps = std::floor(kLongestStep_s / simulation.world.settings().time_step_s);
   double steps = 0;
@@ -25,7 +29,8 @@ Reason step(Simulation& simulation, Session& session, const MessageView& message
     steps = std::floor(*count);
   }
   if (!(steps >= 1 && steps <= most_steps)) return "needs {Time s} or {Steps n}, at most an hour of robot time";
-  if (!simulation.begin_steps(session.id, static_cast<std::uint64_t>(steps))) return "1000 steps are waiting already";
+  if (!simulation.begin_steps(session.id, static_cast<std::uint64_t>(steps), pauser_of(session)))
+    return "1000 steps are waiting already";
   return kDone;
 }
 
@@ -111,7 +116,7 @@ void control(Simulation& simulation, Session& session, const MessageView& messag
 
   Reason reason = kDone;
   if (is_any_of(type, {"Pause"})) {
-    simulation.set_paused(true);
+    simulation.set_paused(true, pauser_of(session));
   } else if (is_any_of(type, {"Resume"})) {
     simulation.set_paused(false);
   } else if (is_any_of(type, {"Step"})) {

@@ -78,6 +78,7 @@ void read_state(const Simulation& simulation, WorldState& state) {
   state.time_s = simulation.world.time_s();
   state.step = simulation.world.step_count();
   state.paused = simulation.clock.paused();
+  state.pauser = simulation.pauser;
   state.speed = simulation.clock.speed();
 
   state.robots.resize(simulation.robot_count());

@@ -59,6 +59,7 @@ struct WorldState {
   double time_s = 0;  // robot time
   std::uint64_t step = 0;
   bool paused = false;
+  Pauser pauser;                   // while it is paused
   double speed = 0;                // requested, times real time; 0: as fast as possible
   std::vector<RobotState> robots;  // in order of connection
   std::vector<BoxState> boxes;

@@ -3,6 +3,7 @@ const PROTOCOL = 2;
 // A state comes 30 times a second, also while the world is paused. Silence is counted, not read off the clock: a page that was held
 // up itself has missed beats too, and has not read yet what came meanwhile.
 const BEAT_MS = 100, SILENT_BEATS = 6;
+const PING_MS = 500, MOST_PINGS = 100;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.
@@ -11,13 +12,25 @@ export function address(path) {
 }
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.
+// `roundTrip_ms()`: from a word to its answer; null before the first. `newestAge_ms()`: of the newest message, since it left the server.
 export function connect(listeners) {
-  const link = { dropped: 0, roundTrip_ms: null, received_ms: null, open: false, send, isHeard };
-  let socket = null;
+  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, newestAge_ms };
+  let socket = null, answered_ms = null, unanswered = [];   // pings: how long the newest answered one took; when the others were sent
   let number = null, server = null, beats = 0;
 
   function send(message) {
     if (link.open) socket.send(JSON.stringify(message));
+  }
+
+  // A ping that is not answered yet has taken longer than the last one as soon as it is older.
+  function roundTrip_ms() {
+    const waits_ms = unanswered.length ? performance.now() - unanswered[0] : 0;
+    return answered_ms === null ? (unanswered.length ? waits_ms : null) : Math.max(answered_ms, waits_ms);
+  }
+
+  // Half of the round trip is taken for the way from the server.
+  function newestAge_ms() {
+    return link.received_ms === null ? Infinity : performance.now() - link.received_ms + (answered_ms ?? 0) / 2;
   }
 
   function isHeard() {
@@ -35,7 +48,10 @@ export function connect(listeners) {
       }
       server = message.server;
     }
-    if (message.type === "pong") link.roundTrip_ms = performance.now() - message.t;
+    if (message.type === "pong") {
+      answered_ms = performance.now() - message.t;
+      unanswered = unanswered.filter((sent_ms) => sent_ms > message.t);
+    }
     if (message.type === "state") {
       if (number !== null && message.n > number + 1) link.dropped += message.n - number - 1;
       number = message.n;
@@ -45,6 +61,7 @@ export function connect(listeners) {
 
   function open() {
     number = null;
+    unanswered = [];
     socket = new WebSocket(address(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`));
     socket.onopen = () => { link.open = true; listeners.open(); };
     socket.onmessage = take;
@@ -57,6 +74,11 @@ export function connect(listeners) {
 
   open();
   setInterval(() => { ++beats; }, BEAT_MS);
-  setInterval(() => send({ type: "ping", t: performance.now() }), 1000);
+  setInterval(() => {
+    if (!link.open) return;
+    const t = performance.now();
+    if (unanswered.length < MOST_PINGS) unanswered.push(t);
+    send({ type: "ping", t });
+  }, PING_MS);
   return link;
 }

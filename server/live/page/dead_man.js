@@ -1,16 +1,18 @@
 // What the operator holds down, by keys, buttons and the stick. Everything is let go of when the window loses the focus or
 // is hidden: nobody drives who does not look. So it is when a list or a menu opens, which keeps to itself that a key came up.
+import { dialogIsOpen, leaveButton, watchFocus } from "./focus.js";
+
 const KEYS = {
   KeyW: "forward", ArrowUp: "forward", KeyS: "back", ArrowDown: "back",
   KeyA: "left", ArrowLeft: "left", KeyD: "right", ArrowRight: "right",
   KeyQ: "front-up", KeyE: "front-down", KeyR: "rear-up", KeyF: "rear-down",
   KeyJ: "look-left", KeyL: "look-right", KeyI: "look-up", KeyK: "look-down", KeyU: "zoom-in", KeyO: "zoom-out", KeyC: "look-ahead",
-  Digit1: "flat", Digit2: "raised", Digit3: "climb", Digit4: "stand",
+  Digit1: "flat", Digit2: "raised", Digit3: "climb", Digit4: "stand", ShiftLeft: "slowly", ShiftRight: "slowly",
 };
 
 // Whether the element with the focus needs the key for itself.
 export function keyIsTaken(event) {
-  if (event.ctrlKey || event.altKey || event.metaKey) return true;
+  if (event.ctrlKey || event.altKey || event.metaKey || dialogIsOpen()) return true;
   if (event.target instanceof HTMLSelectElement) return event.key !== "Escape";
   return event.target instanceof HTMLInputElement && event.code.startsWith("Arrow");
 }
@@ -39,12 +41,16 @@ export function watchHands(active, changed) {
     if (event.key === "Meta") letGo();   // some systems keep what is let go of while it is down to themselves
     const name = KEYS[event.code];
     if (!name || !active() || keyIsTaken(event)) return;
-    event.preventDefault();   // arrows scroll
+    if (name !== "slowly") {   // Shift is half of Shift-Tab too
+      event.preventDefault();   // arrows scroll
+      leaveButton();
+    }
     if (!event.repeat) hold(name, true);
   });
   addEventListener("keyup", (event) => {
     if (KEYS[event.code]) hold(KEYS[event.code], false);
   });
+  watchFocus(letGo);
   addEventListener("blur", letGo);
   addEventListener("pagehide", letGo);
   addEventListener("contextmenu", (event) => { if (!event.defaultPrevented) letGo(); });
@@ -68,8 +74,8 @@ export function watchHands(active, changed) {
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
       button.addEventListener(end, () => hold(name, false));
     }
-    button.addEventListener("keydown", (event) => { if (event.key === " " || event.key === "Enter") { event.preventDefault(); hold(name, true); } });
-    button.addEventListener("keyup", (event) => { if (event.key === " " || event.key === "Enter") hold(name, false); });
+    button.addEventListener("keydown", (event) => { if (event.key === "Enter" && active()) { event.preventDefault(); hold(name, true); } });
+    button.addEventListener("keyup", (event) => { if (event.key === "Enter") hold(name, false); });
     button.addEventListener("blur", () => hold(name, false));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
   }

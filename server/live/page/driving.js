@@ -1,23 +1,31 @@
 // Manual driving: who holds the chosen robot, and the words to the server while you do.
 import { command, isMoving } from "./hand.js";
 import { keyIsTaken, watchHands } from "./dead_man.js";
+import { dialogIsOpen, focusStick } from "./focus.js";
+import { createQuestion } from "./question.js";
+import { describe } from "./drive_state.js";
 
 const REPEAT_MS = 50;   // ten words in the time after which the server takes silence for letting go
 const by = (id) => document.getElementById(id);
 
 export function createDriving(world, link) {
-  let coming = 0;    // placed by this page, not in the inventory yet
-  let leaving = 0;   // let go of or removed, though the newest state is from before
-  const driving = { chosen: 0, update, placed, holding };
-  const hands = watchHands(() => holding() !== null, speak);
+  let coming = 0;       // placed by this page, not in the inventory yet
+  let leaving = 0;      // let go of or removed, though the newest state is from before
+  let placing = false;  // asked for, not answered yet
+  let held = "";        // name of the robot that is yours, by the newest message
+  let lost = "";        // name of the robot that was yours when the link was lost
+  let wasMine = false;
+  const driving = { chosen: 0, update, placed, refused, closed, holding };
+  const hands = watchHands(() => holding() !== null && !dialogIsOpen(), speak);
   driving.held = hands.held;
   driving.letGoOfKeys = hands.letGo;
+  driving.ask = createQuestion(hands.letGo);
 
   const chosen = () => world.robots.get(driving.chosen) ?? null;
   // The robot that is yours, or null.
   function holding() {
     const robot = chosen();
-    return robot?.now && robot.now.holder === world.you && driving.chosen !== leaving ? robot : null;
+    return robot?.now && world.you && robot.now.holder === world.you && driving.chosen !== leaving ? robot : null;
   }
   const pace = () => Number(by("pace").value) / 100;
   const message = (robot) => ({ ...command(hands.held, hands.stick, pace(), robot.about), robot: driving.chosen });
@@ -30,7 +38,7 @@ export function createDriving(world, link) {
   }
   setInterval(() => {
     if (!link.isHeard()) {
-      if (hands.areFull()) hands.letGo();
+      if (hands.areFull()) hands.letGo(); else show();
     } else if (!document.hidden && holding()) {
       link.send(message(holding()));
     }
@@ -41,38 +49,61 @@ export function createDriving(world, link) {
     leaving = 0;
     link.send({ type: "take", robot: driving.chosen });
   }
-  function leave(word) {
+  function leave(word, robot) {
     hands.letGo();
-    link.send({ type: word, robot: driving.chosen });
-    leaving = driving.chosen;
+    link.send({ type: word, robot });
+    if (robot === driving.chosen) leaving = robot;
     show();
   }
   function letGo() {
-    if (holding()) leave("let-go"); else hands.letGo();
+    lost = "";
+    if (holding()) leave("let-go", driving.chosen); else hands.letGo();
+  }
+  function place() {
+    if (placing || !link.open) return;
+    placing = true;
+    letGo();
+    link.send({ type: "place" });
+  }
+  function remove() {
+    const robot = driving.chosen, about = chosen()?.about;
+    if (about) driving.ask(`Remove ${about.name} from the world? This cannot be undone.`, "Remove", () => leave("remove", robot));
   }
   function placed(robot) {
+    placing = false;
     coming = robot;
+    update();
+  }
+  function refused() { placing = false; }
+  function closed() {
+    placing = false;
+    coming = leaving = 0;
     update();
   }
 
   function show() {
     const robot = chosen(), mine = holding();
     const holder = driving.chosen === leaving ? 0 : robot?.now?.holder ?? 0;
-    let state = "none", text = "Not driving";
-    if (!robot) text = world.robots.size ? text : "No robot is in the world: place one, or start a program";
-    else if (mine && isMoving(message(mine))) [state, text] = ["driving", `Driving ${mine.about.name}`];
-    else if (mine) [state, text] = ["held", `${mine.about.name} is at rest: hold a key or the stick to drive`];
-    else if (holder) [state, text] = ["other", `Another operator drives ${robot.about.name}`];
-    else if (robot.now) text = robot.about.placed ? `Not driving: ${robot.about.name} is at rest` : `Not driving: a program commands ${robot.about.name}`;
+    if (!link.isHeard()) {
+      lost ||= held;
+    } else {
+      held = mine?.about.name ?? "";
+      if (mine) lost = "";
+    }
+    const moves = mine !== null && isMoving(message(mine));
+    const { state, text } = describe({ robot, mine, holder, lost, world, isHeard: link.isHeard(), moves });
     const line = by("drive-state");
     if (line.textContent !== text) line.textContent = text;
     line.dataset.state = state;
-    by("take").hidden = mine !== null;
-    by("take").disabled = !robot || holder !== 0;
-    by("let-go").hidden = mine === null;
-    by("hand").hidden = mine === null;
-    by("postures").hidden = !mine?.about.flipper;
-    by("remove").hidden = !(robot?.about.placed && (mine || !holder));
+    // Nothing here moves: what cannot be used stays where it is.
+    by("take").disabled = !robot || holder !== 0 || !world.you;
+    by("let-go").disabled = mine === null;
+    by("place").disabled = !world.you;
+    by("remove").disabled = !world.you || !(robot?.about.placed && (mine || !holder));
+    by("hand").classList.toggle("away", mine === null);
+    if (mine && !wasMine && !(document.activeElement instanceof HTMLSelectElement)) focusStick();
+    wasMine = mine !== null;
+    by("postures").classList.toggle("away", !mine?.about.flipper);
     by("pace-value").textContent = robot ? `${(pace() * robot.about.max_speed).toFixed(2)} m/s` : "";
   }
 
@@ -102,8 +133,8 @@ export function createDriving(world, link) {
   });
   by("take").addEventListener("click", take);
   by("let-go").addEventListener("click", letGo);
-  by("place").addEventListener("click", () => { letGo(); link.send({ type: "place" }); });
-  by("remove").addEventListener("click", () => leave("remove"));
+  by("place").addEventListener("click", place);
+  by("remove").addEventListener("click", remove);
   by("pace").addEventListener("input", show);
   addEventListener("keydown", (event) => {
     if (event.repeat || keyIsTaken(event)) return;

@@ -6,6 +6,7 @@ const POSTURES = {   // degrees; tip up positive; front, rear
   stand: [-60, -60],
 };
 const ARM_SPEED = 1;   // rad/s
+const SLOWLY = 0.3;    // of the pace; chosen
 
 // Two keys against each other are none.
 function sign(held, plus, minus) {
@@ -23,7 +24,7 @@ function wish(held, stick) {
 export function command(held, stick, pace, about) {
   const { forward, turn } = wish(held, stick);
   const left = forward - 0.7 * turn, right = forward + 0.7 * turn;
-  const speed = pace * about.max_speed / Math.max(1, Math.abs(left), Math.abs(right));
+  const speed = pace * (held.has("slowly") ? SLOWLY : 1) * about.max_speed / Math.max(1, Math.abs(left), Math.abs(right));
   const message = { type: "drive", left: left * speed, right: right * speed };
   if (!about.flipper) return message;
 

@@ -2,6 +2,7 @@
 import { connect } from "./connection.js";
 import { createCameraHand } from "./camera_hand.js";
 import { createDriving } from "./driving.js";
+import { createHelp } from "./help.js";
 import { createInstruments } from "./instruments.js";
 import { createLinkHealth } from "./link_health.js";
 import { createPictures } from "./pictures.js";
@@ -17,7 +18,7 @@ const link = connect({
   open() {},
   closed() {
     world.you = 0;
-    driving.update();
+    driving.closed();
     pictures.update();
   },
   hello(message) {
@@ -43,22 +44,34 @@ const link = connect({
     view?.update();
   },
   placed(message) { driving.placed(message.robot); },
-  refused(message) { health.refused(message.reason); },
+  refused(message) {
+    driving.refused();
+    health.refused(message.reason);
+  },
 });
 const driving = createDriving(world, link);
-const timeControls = createTimeControls(world, link, driving.letGoOfKeys);
+const timeControls = createTimeControls(world, link, driving.ask);
+createHelp(driving.letGoOfKeys);
 const instruments = createInstruments();
 const posture = createPosture();
 const timeline = createTimeline();
-const pictures = createPictures(world, chosen);
+const pictures = createPictures(world, link, chosen);
 const cameraHand = createCameraHand(link, driving);
-const health = createLinkHealth(world, link);
+const health = createLinkHealth(world, link, driving.holding, pictures.oldest_ms);
 
-// Driving and figures work without it, where a browser has no WebGL. Pictures wait for it: their streams never end, and those of
-// a few windows are all the connections that a browser has to one server.
+// Driving and figures work without it. Where a browser has no WebGL the cameras take its place. Pictures wait for it: their streams never
+// end, and those of a few windows are all the connections that a browser has to one server.
 let view = null;
+function showCamerasInstead() {
+  view = null;
+  document.body.dataset.view = "cameras";
+  document.getElementById("view").replaceWith(document.getElementById("pictures"));
+}
 import("./view_3d.js").then(({ createView }) => {
-  view = createView(world, chosen, health.refused);
+  view = createView(world, chosen, health.refused, showCamerasInstead);
   view.syncObjects();
   return view.shown;
-}).catch((error) => health.refused(`No 3D view: ${error.message}`)).finally(pictures.start);
+}).catch((error) => {
+  health.refused(`No 3D view, the cameras take its place: ${error.message}`);
+  showCamerasInstead();
+}).finally(pictures.start);

@@ -1,23 +1,50 @@
-// What the cameras of the chosen robot see, and how old it is. A picture is MJPEG, which a browser shows by itself; its stream
-// is closed when nobody sees it, so that the server draws nothing for a hidden page. Nothing is fetched before start().
-import { address } from "./connection.js";
+// What the cameras of the chosen robot see, and how old it is. A stream is closed when nobody sees it, so that the server draws nothing
+// for a hidden page. Nothing is fetched before start().
+import { readPictures } from "./picture_stream.js";
 
 const MOST = 4;            // a browser has six connections to one server
 const AGAIN_MS = 1000;     // after a stream broke
-const OLD_S = 0.5;         // while time runs: something is too slow
+const OLD_MS = 500;        // while time runs: something is too slow
+const KEPT = 200;          // frames whose time is known
 
-export function createPictures(world, chosen) {
+export function createPictures(world, link, chosen) {
   const section = document.getElementById("pictures");
   let started = false, shown = "", figures = [];
 
-  function fetchPicture(picture, robot, camera) {
-    picture.src = address(`/camera/${encodeURIComponent(robot.view)}/${encodeURIComponent(camera.name)}.mjpg`);
+  // When the camera saw the frame, by this page's clock: by the states, which say when the server had it, and by its own stamp. The
+  // stamp is from when it was sent, so it lacks the time that the picture waited on its way; the earlier of the two is right.
+  function seen_ms(figure, part) {
+    const way_ms = (link.roundTrip_ms() ?? 0) / 2, stamped_ms = performance.now() - way_ms - part.age_ms;
+    return Math.min(stamped_ms, figure.seen.get(part.number) ?? Infinity);
+  }
+  function note(figure, camera) {
+    if (camera?.n === undefined || figure.seen.has(camera.n)) return;
+    figure.seen.set(camera.n, performance.now() - (link.roundTrip_ms() ?? 0) / 2 - 1000 * camera.age);
+    if (figure.seen.size > KEPT) figure.seen.delete(figure.seen.keys().next().value);
+  }
+
+  function show(figure, part) {
+    const url = URL.createObjectURL(new Blob([part.jpeg], { type: "image/jpeg" }));
+    const { picture } = figure, before = picture.src;
+    picture.src = url;
+    if (before) URL.revokeObjectURL(before);
+    figure.seen_ms = seen_ms(figure, part);
+  }
+
+  async function read(figure) {
+    while (!figure.ended.signal.aborted) {
+      try {
+        await readPictures(figure.picture.dataset.stream, figure.ended.signal, (part) => show(figure, part));
+      } catch {
+        await new Promise((again) => setTimeout(again, AGAIN_MS));
+      }
+    }
   }
 
   function clear(words) {
-    for (const { picture } of figures) {
-      picture.onerror = null;
-      picture.removeAttribute("src");   // ends its stream
+    for (const { ended, picture } of figures) {
+      ended.abort();
+      if (picture.src) URL.revokeObjectURL(picture.src);
     }
     figures = [];
     const none = document.createElement("p");
@@ -29,20 +56,25 @@ export function createPictures(world, chosen) {
   function build(robot) {
     clear("");
     section.replaceChildren();
-    for (const camera of robot.cameras.slice(0, MOST)) {
-      const figure = document.createElement("figure"), caption = document.createElement("figcaption");
+    figures = robot.cameras.slice(0, MOST).map((camera) => {
+      const frame = document.createElement("figure"), caption = document.createElement("figcaption");
       const name = document.createElement("span"), age = document.createElement("output"), picture = document.createElement("img");
       name.textContent = camera.name;
-      age.title = "Age of the picture at the server, if the server reports it";
+      age.title = "Time since the camera saw this, with the way through the network";
+      age.ariaLabel = `Age of the picture of ${camera.name}`;
+      age.ariaLive = "off";
       caption.append(name, " ", age);
       picture.alt = `Picture of the camera ${camera.name}`;
-      picture.onerror = () => setTimeout(() => { if (picture.onerror) fetchPicture(picture, robot, camera); }, AGAIN_MS);
-      figure.append(picture, caption);
-      section.append(figure);
-      figures.push({ picture, age });
-      fetchPicture(picture, robot, camera);
-    }
+      picture.dataset.stream = `/camera/${encodeURIComponent(robot.view)}/${encodeURIComponent(camera.name)}.mjpg`;
+      frame.append(picture, caption);
+      section.append(frame);
+      const figure = { picture, age, ended: new AbortController(), seen: new Map(), seen_ms: null };
+      read(figure);
+      return figure;
+    });
   }
+
+  const ages_ms = () => figures.filter((figure) => figure.seen_ms !== null).map((figure) => performance.now() - figure.seen_ms);
 
   function update() {
     const robot = chosen();
@@ -56,10 +88,12 @@ export function createPictures(world, chosen) {
       shown = wanted;
       if (wanted) build(robot.about); else clear(words);
     }
-    figures.forEach(({ age }, i) => {
-      const seconds = robot.now?.cameras?.[i]?.age;
-      age.textContent = seconds === undefined ? "" : seconds < 10 ? `${(1000 * seconds).toFixed(0)} ms` : `${seconds.toFixed(0)} s`;
-      age.dataset.state = seconds > OLD_S && !world.paused ? "bad" : "good";
+    figures.forEach((figure, i) => {
+      note(figure, robot.now?.cameras?.[i]);
+      if (figure.seen_ms === null) return;
+      const age_ms = performance.now() - figure.seen_ms;
+      figure.age.textContent = age_ms < 10000 ? `${age_ms.toFixed(0)} ms` : `${(age_ms / 1000).toFixed(0)} s`;
+      figure.age.dataset.state = age_ms > OLD_MS && !world.paused ? "bad" : "good";
     });
   }
 
@@ -67,6 +101,7 @@ export function createPictures(world, chosen) {
   update();
   return {
     update,
+    oldest_ms: () => Math.max(0, ...ages_ms()),
     start() {
       started = true;
       update();

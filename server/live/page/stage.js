@@ -19,14 +19,15 @@ export function dispose(object) {
   });
 }
 
-// `dressed()` is called when the colours or the world have changed; `complain` is called with what is missing, in words; `eye` is where
-// one looks from at first, seen from what is followed. `sharpens`: a picture that was made simpler is drawn in full when nothing
-// moves.
-export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1.25], sharpens = false }) {
+// `dressed()` is called when the colours or the world have changed; `complain` is called with what is missing, in words; `gone()` when the
+// browser has taken the picture away, as it does when a graphics driver fails; `eye` is where one looks from at first, seen from what is
+// followed. `sharpens`: a picture that was made simpler is drawn in full when nothing moves.
+export function createStage({ complain, gone = () => {}, dressed = () => {}, eye = [-1.6, -1.5, 1.25], sharpens = false }) {
   const canvas = document.getElementById("canvas");
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
   const scene = new THREE.Scene(), sky = new THREE.HemisphereLight(0xffffff, 0xb5b0a4, 0.8);
   const sun = new THREE.DirectionalLight(0xfff4e0, 0.6);
+  canvas.addEventListener("webglcontextlost", gone);
   const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
   camera.up.set(0, 0, 1);
   camera.position.set(...eye);
@@ -79,6 +80,7 @@ export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1
   }
 
   function draw(now_ms) {
+    if (!canvas.isConnected) return;   // cameras have taken its place
     requestAnimationFrame(draw);
     if (!dirty && !sharp && sharpens && now_ms > drawn_ms + STILL_MS) {
       sharp = true;

@@ -3,15 +3,14 @@ import { keyIsTaken } from "./dead_man.js";
 
 const by = (id) => document.getElementById(id);
 
-// `letGoOfKeys()`: before a question, which keeps to itself that a key came up.
-export function createTimeControls(world, link, letGoOfKeys) {
+// `ask`: of question.js.
+export function createTimeControls(world, link, ask) {
   const pause = () => link.send({ type: "pause", on: !world.paused });
   by("pause").addEventListener("click", pause);
   by("step").addEventListener("click", () => link.send({ type: "step", time: 0.1 }));
   by("speed").addEventListener("change", (event) => link.send({ type: "speed", value: Number(event.target.value) }));
   by("reset").addEventListener("click", () => {
-    letGoOfKeys();
-    if (confirm("Reset the whole world? Programs that drive in it continue.")) link.send({ type: "reset" });
+    ask("Reset the whole world? All robots go back to their starts; programs that drive in it continue.", "Reset", () => link.send({ type: "reset" }));
   });
   addEventListener("keydown", (event) => {
     if (event.code === "KeyP" && !event.repeat && !keyIsTaken(event)) pause();

@@ -5,11 +5,11 @@ import { createStage, dispose } from "./stage.js";
 
 const HULL = { fault: 0xb03a2e, mine: 0x1d6fb8, silent: 0x7a7f7b, usual: 0x2f7a60 };
 
-// `complain` is called with what is missing, in words. `shown`: a promise, kept when the world is there or its want was complained of.
-export function createView(world, chosen, complain) {
+// `complain` is called with what is missing, in words; `gone()` when the browser has taken the picture away. `shown`: a promise, kept when the world is there or its want was complained of.
+export function createView(world, chosen, complain, gone) {
   const robots = new Map();
   let boxes = [];
-  const stage = createStage({ complain, dressed() { boxes = rebuildBoxes(); } });
+  const stage = createStage({ complain, gone, dressed() { boxes = rebuildBoxes(); } });
   const { scene } = stage;
 
   function rebuildBoxes() {

@@ -1,6 +1,6 @@
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
 export function createWorld() {
-  return { you: 0, name: "", time_s: 0, paused: false, speed: 1, reached: 0, viewers: 0, pictures: false,
+  return { you: 0, name: "", operatorSilence_s: 0.5, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
            robots: new Map(), boxes: [] };
 }
 
@@ -8,6 +8,7 @@ export function takeHello(world, message) {
   world.you = message.you;
   world.name = message.world;
   world.pictures = message.pictures;
+  world.operatorSilence_s = message.operator_silence;
 }
 
 export function takeInventory(world, message) {
@@ -19,6 +20,7 @@ export function takeInventory(world, message) {
 export function takeState(world, message) {
   world.time_s = message.t;
   world.paused = message.paused;
+  world.pausedBy = message.paused_by ?? null;
   world.speed = message.speed;
   world.reached = message.reached;
   world.viewers = message.viewers;

@@ -1,0 +1,27 @@
+// What is known of the chosen robot's driving, in a word for its colour and a sentence. Pure.
+
+// Who stopped the time, as the server has it: the number of an operator's page, or the name of a program.
+export function whoPaused({ pausedBy, you }) {
+  if (pausedBy?.operator) return pausedBy.operator === you ? "you" : "another page";
+  return pausedBy?.program ? `the program ${pausedBy.program}` : "somebody";
+}
+
+// `mine`: the robot, if it is yours; `lost`: the name of the one that was yours when the link was lost; `moves`: keys or stick order a
+// motion.
+export function describe({ robot, mine, holder, lost, world, isHeard, moves }) {
+  if (!isHeard) {
+    const yours = `${lost} stops by itself ${world.operatorSilence_s} s after the last word that reached it`;
+    return { state: "lost", text: lost ? `No link: ${yours}` : "No link: what is shown is old" };
+  }
+  if (!robot) {
+    return { state: "none", text: world.robots.size ? "Not driving" : "No robot is in the world: place one, or start a program" };
+  }
+  const { name, placed } = robot.about;
+  if (mine && world.paused) return { state: "paused", text: `${name} is yours; the world is paused by ${whoPaused(world)}` };
+  if (mine && moves) return { state: "driving", text: `Driving ${name}` };
+  if (mine) return { state: "held", text: `${name} is at rest: hold a key or the stick to drive` };
+  if (holder) return { state: "other", text: `Another operator drives ${name}` };
+  const paused = world.paused ? `; the world is paused by ${whoPaused(world)}` : "";
+  if (lost) return { state: "none", text: `The link was lost, so the server let go of ${lost}. Take over to drive on${paused}` };
+  return { state: "none", text: `Not driving: ${placed ? `${name} is at rest` : `a program commands ${name}`}${paused}` };
+}

@@ -1,0 +1,41 @@
+// Which element has the keyboard. Space means stand wherever the focus is, so it presses no button. A button that was clicked gives the
+// focus back, and whoever drives has it on the stick: there Enter does nothing.
+const isButton = (element) => element instanceof HTMLButtonElement && !element.closest("dialog");
+
+// A dialog has the keyboard for itself, except Space.
+export function dialogIsOpen() {
+  return document.querySelector("dialog[open]") !== null;
+}
+
+export function focusStick() {
+  if (!dialogIsOpen()) document.getElementById("stick").focus({ preventScroll: true });
+}
+
+// Before a key drives: takes the focus off a button, which Enter would press.
+export function leaveButton() {
+  if (isButton(document.activeElement) && !document.activeElement.matches("[data-hold]")) focusStick();
+}
+
+// `stand()`: called for Space.
+export function watchFocus(stand) {
+  const isSpace = (event) => event.code === "Space" && !event.ctrlKey && !event.altKey && !event.metaKey;
+  addEventListener("keydown", (event) => {
+    if (isSpace(event)) {
+      event.preventDefault();   // keeps a button from being pressed, a list from opening, and the page from scrolling
+      event.stopPropagation();
+      stand();
+    } else if (event.key === "Enter" && event.repeat && event.target instanceof HTMLButtonElement) {
+      event.preventDefault();
+    }
+  }, { capture: true });
+  addEventListener("keyup", (event) => { if (isSpace(event)) event.preventDefault(); }, { capture: true });
+  addEventListener("click", (event) => {
+    const button = event.target instanceof Element ? event.target.closest("button") : null;
+    if (!isButton(button)) return;
+    if (event.detail > 1 && button.matches("[data-once]")) {   // the second press of a double click
+      event.stopPropagation();
+      return;
+    }
+    if (event.detail > 0) button.blur();
+  }, { capture: true });
+}
