@@ -37,9 +37,9 @@ export function createCameraHand(link, driving) {
   const side = (angle, minus, plus) => `${Math.abs(degrees(angle)).toFixed(0)}\u00b0 ${Math.abs(angle) < 0.005 ? "" : angle > 0 ? plus : minus}`;
 
   function show({ about }) {
-    by("look-pan-label").hidden = !about.pan;
-    by("look-tilt-label").hidden = !about.tilt;
-    by("look-zoom-label").hidden = about.fov[0] === about.fov[1];
+    by("look-pan-label").classList.toggle("away", !about.pan);
+    by("look-tilt-label").classList.toggle("away", !about.tilt);
+    by("look-zoom-label").classList.toggle("away", about.fov[0] === about.fov[1]);
     if (about.pan) {
       [by("look-pan").min, by("look-pan").max] = [degrees(-about.pan[1]), degrees(-about.pan[0])];
       by("look-pan").value = degrees(-wish.pan);
@@ -91,7 +91,7 @@ export function createCameraHand(link, driving) {
   return {
     update() {
       const seen = camera();
-      by("look").hidden = !seen;
+      by("look").classList.toggle("away", !seen);
       if (!seen) {
         wish = null;
         return;
