@@ -44,7 +44,8 @@ export function createLinkHealth(world, link, mine, oldestPicture_ms) {
                            oldestPicture_ms: oldestPicture_ms() });
     const text = inFigures(isHeard), words = link.received_ms === null && !link.open ? "" : found.join("\n");
     if (chip.textContent !== text) chip.textContent = text;
-    chip.dataset.state = found.length ? "bad" : "good";
+    chip.dataset.state = isHeard ? "good" : "bad";
+    chip.toggleAttribute("data-alarm", found.length > 0);
     chip.title = "From a word to the server's answer; states that were dropped because this browser or the link is slow; viewers";
     if (alarm.textContent !== words) alarm.textContent = words;
     alarm.hidden = words === "";

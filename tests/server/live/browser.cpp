@@ -144,13 +144,20 @@ void Browser::set_dark(bool dark) {
   call("Emulation.setEmulatedMedia", {{"features", json::array({feature})}});
 }
 
-void Browser::key(std::string_view code, bool down) {
-  call("Input.dispatchKeyEvent", {{"type", down ? "rawKeyDown" : "keyUp"}, {"code", code}, {"key", code}});
+void Browser::key(std::string_view code, bool down, std::string_view key) {
+  json event{{"type", down ? "rawKeyDown" : "keyUp"}, {"code", code}, {"key", key.empty() ? code : key}};
+  if (code == "Enter" || code == "Space") {
+    event["windowsVirtualKeyCode"] = code == "Enter" ? 13 : 32;
+    event["key"] = code == "Enter" ? "Enter" : " ";
+    if (down) event["type"] = "keyDown";
+    if (down) event["text"] = code == "Enter" ? "\r" : " ";
+  }
+  call("Input.dispatchKeyEvent", event);
 }
 
-void Browser::mouse(const std::string& what, double x, double y) {
+void Browser::mouse(const std::string& what, double x, double y, int clicks) {
   call("Input.dispatchMouseEvent",
-       {{"type", what}, {"x", x}, {"y", y}, {"button", "left"}, {"buttons", 1}, {"clickCount", 1}});
+       {{"type", what}, {"x", x}, {"y", y}, {"button", "left"}, {"buttons", 1}, {"clickCount", clicks}});
 }
 
 json Browser::evaluate(const std::string& expression) {

@@ -32,9 +32,11 @@ class Browser {
   void open(const std::string& url);
   void resize(int width, int height, bool phone = false);
   void set_dark(bool dark);
-  void key(std::string_view code, bool down);  // a KeyboardEvent.code: "KeyW"
+  // `code`: a KeyboardEvent.code, "KeyW"; `key`: what it types, if that matters. Enter and Space do what they do.
+  void key(std::string_view code, bool down, std::string_view key = {});
   // "mousePressed", "mouseMoved" or "mouseReleased" of the left button, which is down meanwhile.
-  void mouse(const std::string& what, double x, double y);
+  // `clicks`: 2 for the second press of a double click.
+  void mouse(const std::string& what, double x, double y, int clicks = 1);
   // What the expression is worth; a promise is waited for. Throws where it throws.
   nlohmann::json evaluate(const std::string& expression);
   // Until the expression is true; the page may load itself anew meanwhile.

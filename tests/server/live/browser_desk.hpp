@@ -3,27 +3,33 @@
 #pragma once
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/server/live/browser.hpp"
 #include "tests/server/live/served_world.hpp"
 #include "tests/server/live/web_client.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/tcp_proxy.hpp"
 
 namespace kenaf::live {
 
 struct Desk {
   support::TemporaryFolder profile;
   ServedWorld world{"", {}, "step-200"};
-  Browser browser{profile.path()};
+  Browser browser;
+  support::TcpProxy link;
   std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
 
-  Desk() {
+  // `switches`: further ones of the browser's. `each_way`: how long all bytes between browser and server are under way.
+  explicit Desk(const std::vector<std::string>& switches = {}, std::chrono::milliseconds each_way = {})
+      : browser(profile.path(), switches), link(world.port(), each_way) {
     std::filesystem::create_directories(pictures);
     browser.resize(1280, 800);
-    browser.open(world.url());
+    browser.open(each_way.count() == 0 ? world.url() : "http://127.0.0.1:" + std::to_string(link.port()) + "/");
     browser.wait_for("document.getElementById('link')?.dataset.state === 'good'");
   }
   // The state of the first robot, once `condition` holds of it.

@@ -268,6 +268,27 @@ TEST_CASE("A page pauses, steps, speeds up and resets the world") {
   CHECK(page.message_of("pong")["t"] == 4711);
 }
 
+TEST_CASE("A state says who paused the world: the operator's page, or the program by its robot") {
+  ServedWorld world;
+  Page page(world), other(world);
+  page.place();
+  CHECK_FALSE(page.state().contains("paused_by"));
+  other.send_text(R"({"type":"pause","on":true})");
+  const json by_page = page.state_with([](const json& state) { return state["paused"] == true; });
+  CHECK(by_page["paused_by"] == json{{"operator", other.you}});
+  // who comes later has not stopped it
+  page.send_text(R"({"type":"step","time":0.001})");
+  const json stepped = page.state_with([&](const json& state) { return state["step"] > by_page["step"]; });
+  CHECK(stepped["paused_by"] == json{{"operator", other.you}});
+  page.send_text(R"({"type":"pause","on":false})");
+  page.state_with([](const json& state) { return state["paused"] == false && !state.contains("paused_by"); });
+
+  support::UsarsimClient program(world.usarsim_port());
+  program.send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,3,0}\r\nCONTROL {Type Pause}\r\n");
+  const json by_program = page.state_with([](const json& state) { return state["paused"] == true; });
+  CHECK(by_program["paused_by"] == json{{"program", "R1"}});
+}
+
 TEST_CASE("What is no request is refused, and the page is served on") {
   ServedWorld world;
   Page page(world);

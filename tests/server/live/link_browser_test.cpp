@@ -1,0 +1,146 @@
+// What the page says of its link, in a real browser: who paused, that the link is gone, that it is slow, how old the
+// pictures are, and that a slow link delays a stop by no more than it must.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <string>
+
+#include "tests/server/live/browser_desk.hpp"
+#include "tests/support/patience.hpp"
+#include "tests/support/usarsim_client.hpp"
+
+namespace kenaf::live {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+namespace {
+
+std::string text_of(Browser& browser, const std::string& id) {
+  return browser.evaluate("document.getElementById('" + id + "').textContent");
+}
+
+std::string says(const std::string& id, const std::string& words) {
+  return "!document.getElementById('" + id + "').hidden && document.getElementById('" + id +
+         "').textContent.includes('" + words + "')";
+}
+
+// From now on `roundTrips` has what each ping took, and `stops` the time from each key's release to the first state in
+// which the robot stands, in ms, as the page could see it first.
+void watch_times(Browser& browser) {
+  browser.evaluate(
+      "(() => { window.roundTrips = []; window.stops = []; let released = null; const seen = new WeakSet();"
+      "  const send = WebSocket.prototype.send;"
+      "  WebSocket.prototype.send = function (text) {"
+      "    if (!seen.has(this)) { seen.add(this); this.addEventListener('message', ({ data }) => {"
+      "      const message = JSON.parse(data);"
+      "      if (message.type === 'pong') roundTrips.push(performance.now() - message.t);"
+      "      if (message.type !== 'state' || released === null) return;"
+      "      const { command, track_mps } = message.robots[0];"
+      "      if (command.track[0] !== 0 || Math.abs(track_mps[0]) > 0.01) return;"
+      "      stops.push(performance.now() - released); released = null; }); }"
+      "    send.call(this, text); };"
+      "  addEventListener('keyup', () => { released = performance.now(); }, { capture: true }); })()");
+}
+
+}  // namespace
+
+TEST_CASE("In a browser: a world that is paused says by whom, and never that it drives") {
+  Desk desk;
+  desk.place();
+  desk.browser.key("KeyW", true);
+  desk.state_is("driving");
+
+  // by another page
+  WebClient other(desk.world.port());
+  REQUIRE(other.open_websocket());
+  other.send_text(R"({"type":"pause","on":true})");
+  desk.state_is("paused");
+  CHECK(text_of(desk.browser, "drive-state") == "Manual1 is yours; the world is paused by another page");
+  desk.browser.wait_for(says("alarm", "Paused by another page: Manual1 does not move"));
+  other.send_text(R"({"type":"pause","on":false})");
+  desk.state_is("driving");
+  desk.browser.wait_for("!(" + says("alarm", "Paused") + ")");
+
+  // by a program, which is named by its robot
+  support::UsarsimClient program(desk.world.usarsim_port());
+  program.send("INIT {ClassName USARBot.P2DX} {Name R1} {Location 0,3,0}\r\nCONTROL {Type Pause}\r\n");
+  desk.state_is("paused");
+  CHECK(text_of(desk.browser, "drive-state") == "Manual1 is yours; the world is paused by the program R1");
+  program.send("CONTROL {Type Resume}\r\n");
+  desk.state_is("driving");
+
+  // by oneself: told, without an alarm
+  desk.browser.key("KeyP", true);
+  desk.browser.key("KeyP", false);
+  desk.state_is("paused");
+  CHECK(text_of(desk.browser, "drive-state") == "Manual1 is yours; the world is paused by you");
+  desk.browser.wait_for("!(" + says("alarm", "Paused") + ")");
+  desk.browser.key("KeyW", false);
+  CHECK(desk.browser.complaints().empty());
+}
+
+TEST_CASE("In a browser: a lost link is called lost, and afterwards the page says what became of the robot") {
+  Desk desk({}, 1ms);
+  desk.place();
+  desk.browser.key("KeyW", true);
+  desk.robot_with(drives);
+  desk.link.cut();
+  desk.state_is("lost");
+  CHECK(text_of(desk.browser, "drive-state") ==
+        "No link: Manual1 stops by itself 0.5 s after the last word that reached it");
+  desk.browser.wait_for(says("alarm", "No word from the server for"));
+  CHECK(desk.browser.evaluate("document.getElementById('link').dataset.state") == "bad");
+  desk.robot_with(stands);
+  CHECK(desk.state_now() == "lost");
+  desk.browser.key("KeyW", false);
+}
+
+TEST_CASE("In a browser: a page whose server comes back says that its robot was let go of") {
+  Desk desk;
+  desk.place();
+  desk.browser.evaluate(
+      "(() => { const send = WebSocket.prototype.send; WebSocket.prototype.send = function (text) {"
+      "  window.socket = this; send.call(this, text); }; })()");
+  desk.browser.wait_for("window.socket");
+  desk.browser.evaluate("socket.close()");
+  desk.browser.wait_for("document.getElementById('drive-state').dataset.state === 'none' && " +
+                        says("drive-state", "The link was lost, so the server let go of Manual1"));
+  desk.browser.evaluate("document.getElementById('take').click()");
+  desk.state_is("held");
+}
+
+TEST_CASE("In a browser, 250 ms from its server: an alarm, the true age of the pictures, and a stop without delay") {
+  Desk desk({"--disable-3d-apis"}, 250ms);
+  watch_times(desk.browser);
+  desk.place();
+  desk.browser.wait_for(says("alarm", "Slow link: 0."));
+  desk.browser.wait_for("/round trip [5-9][0-9]{2} ms/.test(document.getElementById('link').textContent)");
+
+  // A picture is under way for 250 ms, whatever age the server gives it.
+  desk.browser.wait_for("document.querySelectorAll('#pictures output').length === 2");
+  const std::string ages =
+      "[...document.querySelectorAll('#pictures output')].map((age) => Number(age.textContent.match(/^[0-9]+/)))";
+  desk.browser.wait_for(ages + ".every((age) => age > 0)");
+  CHECK(desk.browser.evaluate("Math.min(..." + ages + ")") >= 250);
+
+  // From the key's release to the sight of the robot at rest: the round trip, the drive's own 0.1 s, and a state's
+  // period. The quickest of many: a loaded machine may hold up any one.
+  const bool soon = support::eventually([&] {
+    desk.browser.key("KeyW", true);
+    desk.browser.wait_for("document.getElementById('drive-state').dataset.state === 'driving'");
+    desk.robot_with(drives);
+    const int before = desk.browser.evaluate("stops.length");
+    desk.browser.key("KeyW", false);
+    desk.browser.wait_for("stops.length > " + std::to_string(before));
+    return desk.browser.evaluate("Math.min(...stops) <= Math.min(...roundTrips) + 150") == true;
+  });
+  CHECK(soon);
+  const double stop_ms = desk.browser.evaluate("Math.min(...stops)");
+  const double round_trip_ms = desk.browser.evaluate("Math.min(...roundTrips)");
+  CHECK(round_trip_ms >= 500);
+  CHECK(stop_ms >= 500);
+  WARN("stop seen after " << stop_ms << " ms, round trip " << round_trip_ms << " ms");
+  CHECK(desk.browser.evaluate("Math.min(..." + ages + ")") >= 250);
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,49 @@
+// Checks of what a page shows, evaluated in it: overlaps() and pale() list what is wrong, in words.
+//
+// overlaps(): elements with text, controls and pictures that cover each other, leave their section or the page, or are cut off.
+// pale(): text whose contrast with what is behind it is below 4.5 : 1 (WCAG 2.2, 1.4.3, with its formula of relative luminance).
+// nameless(): controls without a name. small(): those smaller than 24 x 24 CSS pixels (2.5.8).
+(() => {
+  const seen = (e) => e.checkVisibility({ visibilityProperty: true, opacityProperty: true }) && e.getClientRects().length > 0;
+  const box = (e) => e.getBoundingClientRect();
+  const name = (e) => e.id ? `#${e.id}` : `${e.tagName.toLowerCase()} "${e.textContent.trim().slice(0, 20)}"`;
+  const parts = () => [...document.querySelectorAll("header *, main *")]
+    .filter((e) => seen(e) && !e.closest("#alarms, option"))
+    .filter((e) => e.matches("button, select, input, output, img, svg, #stick, dt, dd, p, h1, #chart, label > span"));
+  window.overlaps = () => {
+    const found = [], shown = parts();
+    for (let i = 0; i < shown.length; ++i) for (let k = i + 1; k < shown.length; ++k) {
+      const [a, b] = [shown[i], shown[k]];
+      if (a.contains(b) || b.contains(a) || b.closest("figcaption") || a.closest("figcaption")) continue;
+      const p = box(a), q = box(b);
+      const w = Math.min(p.right, q.right) - Math.max(p.left, q.left), h = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+      if (w > 1 && h > 1) found.push(`${name(a)} and ${name(b)} by ${w.toFixed(0)} x ${h.toFixed(0)}`);
+    }
+    for (const e of shown) {
+      const section = e.closest("section, header"), p = box(e), q = box(section);
+      if (q.width > 0 && (p.left < q.left - 1 || p.right > q.right + 1 || p.top < q.top - 1 || p.bottom > q.bottom + 1)) found.push(`${name(e)} leaves ${name(section)}`);
+      if (p.right > innerWidth + 1 || p.left < -1) found.push(`${name(e)} leaves the page`);
+      if (!e.matches("select, input") && e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0) found.push(`${name(e)} is cut`);
+    }
+    if (document.documentElement.scrollWidth > innerWidth) found.push(`the page is ${document.documentElement.scrollWidth} wide`);
+    return found;
+  };
+  const sRGB = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const luminance = (c) => 0.2126 * sRGB(c[0] / 255) + 0.7152 * sRGB(c[1] / 255) + 0.0722 * sRGB(c[2] / 255);
+  const colour = (text) => { const c = text.match(/[\d.]+/g).map(Number); return [c[0], c[1], c[2], c[3] ?? 1]; };
+  const over = (c, back) => [0, 1, 2].map((i) => c[i] * c[3] + back[i] * (1 - c[3]));
+  const backOf = (e) => {
+    const layers = [];
+    for (let at = e; at; at = at.parentElement) { layers.push(colour(getComputedStyle(at).backgroundColor)); if (layers.at(-1)[3] === 1) break; }
+    return layers.reverse().reduce((under, layer) => over(layer, under), [255, 255, 255]);
+  };
+  window.pale = () => [...document.querySelectorAll("body *")].filter((e) => seen(e) && [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim()))
+    .map((e) => {
+      const style = getComputedStyle(e), back = backOf(e), ink = over(colour(e.closest("svg") ? style.fill : style.color), back);
+      const [a, b] = [luminance(ink), luminance(back)], ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      return ratio < 4.5 ? `${name(e)} ${ratio.toFixed(2)}` : "";
+    }).filter(Boolean);
+  const controls = () => [...document.querySelectorAll("button, select, input, [tabindex]")].filter(seen);
+  window.nameless = () => controls().filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).map(name);
+  window.small = () => controls().filter((e) => !e.matches("input") && (box(e).width < 24 || box(e).height < 24)).map(name);
+})()
