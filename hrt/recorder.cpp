@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <thread>
 
 #include "hrt/error.hpp"
 #include "hrt/quiet_thread.hpp"
@@ -15,7 +16,8 @@
 namespace kenaf::hrt {
 namespace {
 
-constexpr auto kLongestWait = std::chrono::milliseconds(100);
+// How long add() waits for the disk, where it may, and how often it looks.
+constexpr auto kLongestWait = std::chrono::milliseconds(100), kAskDiskEvery = std::chrono::milliseconds(1);
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -117,7 +119,6 @@ Recorder::~Recorder() {
 }
 
 void Recorder::add(const robot::State& state, const robot::Command& command, double t_s) {
-  std::unique_lock lock(mutex_);
   if (!started_) {
     started_ = true;
     start_t_s_ = t_s;
@@ -125,60 +126,68 @@ void Recorder::add(const robot::State& state, const robot::Command& command, dou
     return;
   }
   last_t_s_ = t_s;
-  const auto has_room = [&] { return count_ < kQueueRows; };
-  if (wait_when_full_) row_taken_.wait_for(lock, kLongestWait, has_room);
-  if (!has_room() || ended_) {
+  const std::uint32_t added = added_.load(std::memory_order_relaxed);
+  const auto has_room = [&] { return added - taken_.load(std::memory_order_acquire) < kQueueRows; };
+  if (wait_when_full_ && !has_room()) {
+    const auto latest = std::chrono::steady_clock::now() + kLongestWait;
+    while (!has_room() && std::chrono::steady_clock::now() < latest) std::this_thread::sleep_for(kAskDiskEvery);
+  }
+  if (!has_room()) {
     ++lost_;
     return;
   }
-  queue_[(first_ + count_) % kQueueRows] = record_row(state, command, whole_nanoseconds(t_s - start_t_s_));
-  ++count_;
-  row_added_.notify_one();
+  queue_[added % kQueueRows] = record_row(state, command, whole_nanoseconds(t_s - start_t_s_));
+  added_.store(added + 1, std::memory_order_release);
+  ++wake_;
+  wake_.notify_one();
 }
 
 void Recorder::write_rows() {
-  std::unique_lock lock(mutex_);
   for (;;) {
-    row_added_.wait(lock, [&] { return count_ > 0 || ended_; });
-    if (count_ == 0) return;
-    const RecordRow row = queue_[first_];
-    first_ = (first_ + 1) % kQueueRows;
-    --count_;
-    row_taken_.notify_one();
-    if (!failure_.empty()) continue;
-    lock.unlock();
-    std::string failure;
-    try {
-      writer_->add_row(row);
-    } catch (const std::exception& error) {
-      failure = error.what();
+    // in this order: a row or an end that comes after the first line changes wake_, and so ends the wait
+    const std::uint32_t seen = wake_.load();
+    const bool is_last = ended_.load();
+    const std::uint32_t taken = taken_.load(std::memory_order_relaxed);
+    if (taken == added_.load(std::memory_order_acquire)) {
+      if (is_last) return;
+      wake_.wait(seen);
+      continue;
     }
-    lock.lock();
-    failure_ = failure;
+    try {
+      if (is_writing()) writer_->add_row(queue_[taken % kQueueRows]);
+    } catch (const std::exception& error) {
+      failure_ = error.what();
+      broken_.store(true, std::memory_order_release);
+    }
+    taken_.store(taken + 1, std::memory_order_release);
   }
 }
 
+std::string Recorder::lost_rows() const {
+  return fmt::format("{0}: {1} rows are missing, because the disk was too slow; {0}.part has the others", path_,
+                     lost_.load());
+}
+
+std::string Recorder::trouble() const {
+  if (!is_writing()) return fmt::format("the recording is incomplete: {}", failure_);
+  return lost_ > 0 ? lost_rows() : std::string();
+}
+
 void Recorder::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-    row_added_.notify_one();
-  }
+  ended_ = true;
+  ++wake_;
+  wake_.notify_one();
   if (thread_.joinable()) {
     thread_.join();
     try {
-      if (failure_.empty() && started_ && lost_ == 0) writer_->finish();
+      if (is_writing() && started_ && lost_ == 0) writer_->finish();
     } catch (const std::exception& error) {
       failure_ = error.what();
+      broken_ = true;
     }
     writer_.reset();
   }
-  if (!failure_.empty()) throw Error(HRT_E_RECORD, fmt::format("the recording is incomplete: {}", failure_));
-  if (lost_ > 0) {
-    throw Error(
-        HRT_E_RECORD,
-        fmt::format("{0}: {1} rows are missing, because the disk was too slow; {0}.part has the others", path_, lost_));
-  }
+  if (const std::string incomplete = trouble(); !incomplete.empty()) throw Error(HRT_E_RECORD, incomplete);
 }
 
 }  // namespace kenaf::hrt

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <condition_variable>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -28,7 +28,8 @@ std::vector<std::string> record_columns();
 // previous state.
 RecordRow record_row(const robot::State& state, const robot::Command& command, double t_s);
 
-// Thread safety: add() is for one thread at a time; finish() must follow the last add().
+// Thread safety: add() is for one thread at a time, and neither locks nor allocates; trouble() and is_writing() are for
+// any thread; finish() must follow the last add().
 class Recorder {
  public:
   // 2^13 rows are 82 s of 10 ms cycles: longer than a disk stalls, 3 MB of memory.
@@ -43,24 +44,39 @@ class Recorder {
   // added. A state no later than the previous one is skipped.
   void add(const robot::State& state, const robot::Command& command, double t_s);
 
+  // Says at once what has made the recording incomplete, with the file: a row that could not be written (a full disk),
+  // or rows that found the queue full; "" while it is whole.
+  std::string trouble() const;
+  // False from the first row on that could not be written: no later one is.
+  bool is_writing() const { return !broken_.load(std::memory_order_acquire); }
+
   // Writes the queued rows and closes the file. Throws Error(HRT_E_RECORD) with the reason if the file is incomplete;
   // the rows written so far stay in the part file.
   void finish();
 
  private:
   void write_rows();
+  std::string lost_rows() const;
 
   std::string path_;
   bool wait_when_full_;
   std::unique_ptr<runs::RunWriter> writer_;  // until finish()
-  std::mutex mutex_;
-  std::condition_variable row_added_, row_taken_;
-  std::vector<RecordRow> queue_;  // a ring buffer of kQueueRows
-  std::size_t first_ = 0, count_ = 0, lost_ = 0;
-  bool ended_ = false;
+
+  // A ring buffer between two threads: add() fills queue_[added_ % kQueueRows] and then counts it in added_, the writer
+  // does the same with taken_. So each index is stored by one thread only, and a row is seen whole.
+  std::vector<RecordRow> queue_;
+  std::atomic<std::uint32_t> added_ = 0, taken_ = 0;
+  std::atomic<std::uint32_t> wake_ = 0;  // changes with each row and at the end: the writer sleeps on it
+  std::atomic<bool> ended_ = false;
+  std::atomic<std::uint64_t> lost_ = 0;
+
+  // of add()
   bool started_ = false;
   double start_t_s_ = 0, last_t_s_ = 0;
+
+  // The writer stores failure_ once, before broken_; until then nobody reads it.
   std::string failure_;
+  std::atomic<bool> broken_ = false;
   std::thread thread_;
 };
 

@@ -29,6 +29,11 @@ constexpr double kCycleRounding = 1e-3;
 
 constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
 
+// One line of both.
+std::string joined(const std::string& one, const std::string& other) {
+  return one + (one.empty() || other.empty() ? "" : "; ") + other;
+}
+
 }  // namespace
 
 Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
@@ -266,7 +271,8 @@ Snapshot Robot::snapshot() {
   }
   out.motion_active = motion_active();
   out.stopped_by_silence = stopped_by_silence_;
-  out.recording = recorder_ != nullptr;
+  out.recording = recorder_ && recorder_->is_writing();
+  if (recorder_) out.warning = joined(out.warning, recorder_->trouble());
   out.lockstep = connection_.lockstep;
   out.lost = failure_;
   if (!failure_) last_call_t_s_ = estimate_.t_s;
@@ -292,7 +298,11 @@ void Robot::record_start(const std::string& path) {
   const std::lock_guard one(record_mutex_);
   {
     const std::unique_lock lock = lock_open();
-    if (recorder_) throw Error(HRT_E_BUSY, "a recording is running; hrt_record_stop() ends it");
+    if (recorder_) {
+      const std::string trouble = recorder_->trouble();
+      throw Error(HRT_E_BUSY, trouble.empty() ? "a recording is running; hrt_record_stop() ends it"
+                                              : "hrt_record_stop() has not been called since " + trouble);
+    }
   }
   // the file is created while cycles continue: a disk may take seconds
   auto recorder = std::make_unique<Recorder>(path, connection_.lockstep);

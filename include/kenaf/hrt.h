@@ -311,11 +311,12 @@ enum {
   HRT_PAUSED = 1 << 1,             /* the simulation's clock has been stopped by somebody */
   HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped, until their next command, because no hrt_ call came for
                                       command_timeout_s; libkenaf_sim also: because no command came from the library */
-  HRT_RECORDING = 1 << 3,          /* a recording is under way */
+  HRT_RECORDING = 1 << 3,          /* a recording is under way, and its rows can be written: falls with the first one
+                                      that cannot, see hrt_record_start */
   HRT_IN_LOCKSTEP = 1 << 4,        /* robot time waits for this program */
-  HRT_DEGRADED = 1 << 5            /* the robot lacks something, or (libkenaf_real) its configuration does not fit its
-                                      description, or (libkenaf_sim) it did not begin at the first start pose:
-                                      hrt_get_warning says what */
+  HRT_DEGRADED = 1 << 5            /* the robot lacks something, or a recording is incomplete, or (libkenaf_real) its
+                                      configuration does not fit its description, or (libkenaf_sim) it did not begin at
+                                      the first start pose: hrt_get_warning says what */
 };
 
 /* State of the robot as of one cycle. */
@@ -376,10 +377,11 @@ int hrt_get_state(hrt_state* state);
 int hrt_wait_cycle(hrt_state* state);
 
 /* Describes what is missing on the robot, in one line of English such as "inclinometer (node 7) is silent: no posture,
- * and the heading is that of the tracks"; "" if nothing is missing. libkenaf_real also reports a track_gauge_mm more
- * than 5 % off the description's; libkenaf_sim that the robot did not begin at the world's first start pose, because it
- * was not free. Writes at most size - 1 bytes and a zero, even if the call fails for a reason other
- * than its arguments. HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0; HRT_E_LINK: as of the last state. */
+ * and the heading is that of the tracks"; "" if nothing is missing. Also reports, until hrt_record_stop, a recording
+ * that is incomplete, because the disk is full or too slow. libkenaf_real also reports a track_gauge_mm more than 5 %
+ * off the description's; libkenaf_sim that the robot did not begin at the world's first start pose, because it was not
+ * free. Writes at most size - 1 bytes and a zero, even if the call fails for a reason other than its arguments.
+ * HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0; HRT_E_LINK: as of the last state. */
 int hrt_get_warning(char* text, size_t size);
 
 /* Prints the newest state to standard output in a few lines of text. HRT_E_NOT_INITIALISED; HRT_E_LINK: prints the last
@@ -477,7 +479,9 @@ int hrt_get_picture(const char* camera, int format, void* data, size_t capacity,
  * writes to <path>.part, which hrt_record_stop renames to `path`: that file is complete or absent, and an incomplete
  * recording stays in the part file. No cycle waits for the disk; only in lock step, where robot time waits too, a row
  * that finds 8192 others queued waits 0.1 s for the disk before it is lost. An existing file of that name is replaced.
- * HRT_E_NOT_INITIALISED; HRT_E_BUSY: a recording is under way; HRT_E_ARGUMENT: null or empty; HRT_E_RECORD: the file
+ * A full disk, or another reason why a row cannot be written, shows within a cycle or two: HRT_RECORDING falls,
+ * hrt_get_warning has the reason, and no later row is written. The robot goes on; hrt_record_stop ends the recording.
+ * HRT_E_NOT_INITIALISED; HRT_E_BUSY: a recording was not ended; HRT_E_ARGUMENT: null or empty; HRT_E_RECORD: the file
  * cannot be created; HRT_E_LINK. */
 int hrt_record_start(const char* path);
 

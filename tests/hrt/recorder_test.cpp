@@ -1,21 +1,26 @@
 // A recording runs beside the cycle, on a disk that stalls: a pipe that nobody reads stands for the disk, so that the
 // test and not a clock decides how long it stalls. No cycle may wait for the disk, rows are lost only beyond the length
-// of the queue, and every loss is counted and reported. A row holds the values that were measured for it and the
+// of the queue, and every loss is counted and reported. A disk that is full says so at once: a limit on the size of the
+// process's files stands for it, and the robot drives on. A row holds the values that were measured for it and the
 // command in force, and the environment variable records as the call does.
 #include "hrt/recorder.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "formats/runs/run_file.hpp"
@@ -73,6 +78,38 @@ class StalledDisk {
   std::thread reader_;
   std::string bytes_;
 };
+
+// No file of this process grows beyond `bytes`: writing more fails, as on a full disk, after a part of a row has gone.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : signal_before_(std::signal(SIGXFSZ, SIG_IGN)) {
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
+    const rlimit limit{bytes, before_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_before_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_before_)(int);
+};
+
+std::string warning_now() {
+  std::array<char, 1024> text{};
+  REQUIRE(hrt_get_warning(text.data(), text.size()) == HRT_OK);
+  return text.data();
+}
+
+std::uint32_t activity_now() {
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  return state.activity;
+}
 
 robot::State state_of(std::uint32_t frame) {
   robot::State state{};
@@ -149,6 +186,69 @@ TEST_CASE("A robot that does not wait for its program is answered in every cycle
     REQUIRE(frame[i] == frame[0] + static_cast<double>(i));
     REQUIRE(late[i] == 0);
   }
+}
+
+TEST_CASE("A full disk is told while the robot drives on, and keeps what was written before") {
+  const support::TemporaryFolder folder;
+  const auto robot = hrt::test::use_fake_robot();
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  CHECK((activity_now() & HRT_RECORDING) != 0);
+  CHECK((activity_now() & HRT_DEGRADED) == 0);
+  CHECK(warning_now().empty());
+  std::string said;
+  {
+    const FullDisk full(16384);  // 0.1 s are 10 rows, of less than 1024 bytes each
+    while ((activity_now() & HRT_RECORDING) != 0) REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
+    CHECK((activity_now() & HRT_DEGRADED) != 0);
+    said = warning_now();
+    CHECK_THAT(said, Catch::Contains("the recording is incomplete: " + recording_in(folder) +
+                                     ".part: cannot be written: " + std::generic_category().message(EFBIG)));
+    REQUIRE(hrt_go_forward(50) == HRT_OK);
+  }
+  // room on the disk again: a recording with a hole is none, so it does not go on
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  CHECK((activity_now() & HRT_RECORDING) == 0);
+  CHECK(warning_now() == said);
+  CHECK(hrt_record_start((folder.path() / "next.csv").c_str()) == HRT_E_BUSY);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_record_stop()") && Catch::Contains(said));
+
+  CHECK(hrt_record_stop() == HRT_E_RECORD);
+  CHECK(hrt_last_error() == said);
+  CHECK(warning_now().empty());
+  CHECK_FALSE(std::filesystem::exists(recording_in(folder)));
+  // the row that the limit cut is left out when the part file is read
+  const std::string part = recording_in(folder) + ".part";
+  CHECK(std::filesystem::file_size(part) == 16384);
+  CHECK(runs::read_run(part).row_count() > 10);
+  CHECK(hrt_record_start((folder.path() / "next.csv").c_str()) == HRT_OK);
+  CHECK((activity_now() & HRT_RECORDING) != 0);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("A disk without room for the first line refuses the recording") {
+  const support::TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/full", recording_in(folder) + ".part");
+  hrt::test::use_fake_robot();
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  CHECK(hrt_record_start(recording_in(folder).c_str()) == HRT_E_RECORD);
+  CHECK_THAT(hrt_last_error(),
+             Catch::Contains(recording_in(folder)) && Catch::Contains(std::generic_category().message(ENOSPC)));
+  CHECK((activity_now() & HRT_RECORDING) == 0);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("Rows that a slow disk costs are told while it is recorded on") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  Recorder recorder(recording_in(folder), false);
+  constexpr std::uint32_t kRows = 3 * Recorder::kQueueRows;
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), robot::Command{}, 0.01 * i);
+  CHECK_THAT(recorder.trouble(), Catch::Contains("rows are missing, because the disk was too slow"));
+  CHECK(recorder.is_writing());
+  disk.resume();
+  CHECK_THROWS_AS(recorder.finish(), hrt::Error);
 }
 
 TEST_CASE("Cycles go on while the disk makes the file of a recording") {
