@@ -53,15 +53,22 @@ void Master::start_heartbeat() {
   if (!next_heartbeat_) next_heartbeat_ = now();
 }
 
+void Master::watch_pauses(Time silence) {
+  longest_pause_ = silence;
+  suspended_before_ = bus_.suspended();
+}
+
 void Master::check_pause() {
   if (!longest_pause_ || !next_heartbeat_) return;
-  const Time pause = now() - (*next_heartbeat_ - heartbeat_);
-  if (pause < *longest_pause_) return;
+  const Time suspended = bus_.suspended() - suspended_before_;
+  const Time pause = now() - (*next_heartbeat_ - heartbeat_) + suspended;
+  if (pause < *longest_pause_ && suspended == Time::zero()) return;
   stop_heartbeat();
   throw HeldUp(HRT_E_LINK,
-               fmt::format("this program was held up for {:.2f} s: its heartbeat was missed, and the drives stopped by "
-                           "themselves; to start them again, call hrt_close(), then hrt_kenaf_init()",
-                           std::chrono::duration<double>(pause).count()));
+               fmt::format("{} for {:.2f} s: its heartbeat was missed, and the drives stopped by themselves; to start "
+                           "them again, call hrt_close(), then hrt_kenaf_init()",
+                           suspended > Time::zero() ? "this computer was suspended" : "this program was held up",
+                           std::chrono::duration<double>(suspended > Time::zero() ? suspended : pause).count()));
 }
 
 void Master::send_heartbeat() {

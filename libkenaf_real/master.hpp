@@ -37,7 +37,7 @@ class OtherMaster : public ControlLost {
  public:
   using ControlLost::ControlLost;
 };
-// No heartbeat was sent for so long that the drives have stopped by themselves.
+// No heartbeat was sent for so long that the drives have stopped by themselves, or the computer was suspended.
 class HeldUp : public ControlLost {
  public:
   using ControlLost::ControlLost;
@@ -54,10 +54,11 @@ class Master {
   // From now on receive() sends a heartbeat whenever one is due.
   void start_heartbeat();
   void stop_heartbeat() { next_heartbeat_.reset(); }
-  // From now on the drives obey: a pause of `silence` in the heartbeat ends that, and receive() and check_pause() throw
-  // HeldUp, once, before anything else is sent. Drives whose watch had restarted would otherwise follow the next
-  // command as if nothing had happened.
-  void watch_pauses(canopen::Time silence) { longest_pause_ = silence; }
+  // From now on the drives obey: a pause of `silence` in the heartbeat ends that, or a suspend of the computer of any
+  // length, which the clock of the pauses does not count. receive() and check_pause() then throw HeldUp, once, before
+  // anything else is sent. Drives whose watch had restarted would otherwise follow the next command as if nothing had
+  // happened.
+  void watch_pauses(canopen::Time silence);
   void check_pause();
 
   void watch(FrameWatch watch) { watch_ = std::move(watch); }
@@ -83,6 +84,7 @@ class Master {
   canopen::NodeId own_node_;
   canopen::Time heartbeat_, answer_patience_;
   std::optional<canopen::Time> next_heartbeat_, longest_pause_;
+  canopen::Time suspended_before_{};  // before the pauses were watched
   FrameWatch watch_;
   bool interrupted_ = false;
 };

@@ -170,6 +170,7 @@ void SocketBus::open(std::span<const std::uint16_t> ids) {
   if (bind(raw_, reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0) lost(errno);
   broadcast_manager_ = open_socket(SOCK_DGRAM, CAN_BCM, "broadcast manager", "can_bcm");
   if (connect(broadcast_manager_, reinterpret_cast<const sockaddr*>(&address), sizeof address) < 0) lost(errno);
+  suspended();  // counts from here
 }
 
 void SocketBus::close() {
@@ -192,6 +193,12 @@ void SocketBus::lost(int error) const {
 
 Time SocketBus::now() const {
   return read_clock(CLOCK_MONOTONIC);
+}
+
+Time SocketBus::suspended() {
+  const Time before = read_clock(CLOCK_MONOTONIC), boot = read_clock(CLOCK_BOOTTIME),
+             after = read_clock(CLOCK_MONOTONIC);
+  return suspended_since(suspend_watch_, before, boot, after);
 }
 
 void SocketBus::send(const Frame& frame) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "can/canbus/suspend_watch.hpp"
 #include "can/canbus/wall_clock.hpp"
 #include "can/canopen/bus.hpp"
 
@@ -30,6 +31,7 @@ class SocketBus final : public canopen::Bus {
   SocketBus& operator=(const SocketBus&) = delete;
 
   canopen::Time now() const override;
+  canopen::Time suspended() override;
   // Waits for room if the interface's queue is full, 20 ms at most.
   void send(const canopen::Frame& frame) override;
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override;
@@ -46,6 +48,7 @@ class SocketBus final : public canopen::Bus {
   std::string interface_;
   int raw_ = -1, broadcast_manager_ = -1, interrupt_ = -1;
   WallClock wall_clock_;
+  SuspendWatch suspend_watch_;
   std::string last_warning_;  // the newest error frame in words, "" after none: "no acknowledgement: is anybody else on
                               // the bus?"
 };

@@ -33,6 +33,8 @@ class Bus {
  public:
   virtual ~Bus() = default;
   virtual Time now() const = 0;
+  // How long the computer was suspended since the bus was opened: now() stands still meanwhile, but the nodes go on.
+  virtual Time suspended() { return {}; }
   // Throws BusError; BusFull after a short wait.
   virtual void send(const Frame& frame) = 0;
   // Returns the next frame of another node, or a SYNC of start_sync; nullopt at `until`, or if interrupt() was called

@@ -69,6 +69,51 @@ TEST_CASE("A program that was held up for longer than its drives wait for it say
   }
 }
 
+TEST_CASE("A computer that was suspended says nothing but quick stop when it wakes, however short it slept") {
+  // while the program waits for a state, and between the state and its answer; for longer than the drives wait, and not
+  for (const bool has_state : {false, true}) {
+    for (const milliseconds slept : {milliseconds(5000), milliseconds(30)}) {
+      RobotOnBus robot;
+      robot.open();
+      robot.run(50, drive_at(0.2, 0.2));
+      if (has_state) (void)robot.transport.wait_state();
+      robot.wire.suspend_until(robot.wire.now() + slept);
+      const bool have_stopped = slept > milliseconds(100);
+      CHECK(robot.all_are(have_stopped ? PowerState::quick_stop_active : PowerState::operation_enabled));
+      const auto words = watch_controlwords(robot);
+      try {
+        if (has_state) robot.transport.send(drive_at(0.2, 0.2));
+        robot.run(3, drive_at(0.2, 0.2));
+        FAIL("it drives on");
+      } catch (const hrt::Error& error) {
+        CHECK(error.code() == HRT_E_LINK);
+        CHECK_THAT(error.what(), Catch::Contains(have_stopped ? "this computer was suspended for 5.00 s"
+                                                              : "this computer was suspended for 0.03 s"));
+      }
+      CHECK(*words == std::vector<std::uint16_t>(canbus::kDriveCount, canopen::kControlQuickStop));
+      // the next session counts anew
+      robot.transport.close();
+      robot.open();
+      CHECK(robot.all_are(PowerState::operation_enabled));
+      robot.run(50, drive_at(0.2, 0.2));
+    }
+  }
+}
+
+TEST_CASE("A suspend while the robot is being opened ends the opening") {
+  RobotOnBus robot;
+  bool slept = false;
+  robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
+    // the first order to a drive: it is configured, and about to be enabled
+    if (sender == Sender::master && frame.id == 0x201 && !slept) {
+      slept = true;
+      robot.wire.suspend_until(robot.wire.now() + milliseconds(300));
+    }
+    return true;
+  };
+  CHECK_THROWS_WITH(robot.open(), Catch::Contains("this computer was suspended for 0.30 s"));
+}
+
 TEST_CASE("A program that was held up for less than that goes on") {
   RobotOnBus robot;
   robot.open();

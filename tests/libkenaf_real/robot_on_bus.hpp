@@ -18,6 +18,7 @@ class BorrowedBus final : public canopen::Bus {
  public:
   explicit BorrowedBus(canopen::Bus& bus) : bus_(bus) {}
   canopen::Time now() const override { return bus_.now(); }
+  canopen::Time suspended() override { return bus_.suspended(); }
   void send(const canopen::Frame& frame) override { bus_.send(frame); }
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override { return bus_.receive(until); }
   void start_sync(canopen::Time period) override { bus_.start_sync(period); }

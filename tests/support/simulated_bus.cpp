@@ -30,13 +30,17 @@ std::optional<ReceivedFrame> SimulatedBus::receive(Time until) {
   while (true) {
     check_up();
     if (!in_socket_.empty()) {
-      const ReceivedFrame first = in_socket_.front();
+      ReceivedFrame first = in_socket_.front();
       in_socket_.pop_front();
+      first.at -= suspended_;
       return first;
     }
     if (std::exchange(interrupted_, false)) return std::nullopt;
-    if (auto received = step(until)) return received;
-    if (now_ >= until) return std::nullopt;
+    if (auto received = step(until + suspended_)) {
+      received->at -= suspended_;
+      return received;
+    }
+    if (now() >= until) return std::nullopt;
   }
 }
 
@@ -86,6 +90,15 @@ void SimulatedBus::hold_up_until(Time until) {
   while (now_ < until) {
     if (const auto received = step(until)) in_socket_.push_back(*received);
   }
+}
+
+void SimulatedBus::suspend_until(Time until) {
+  const Time begin = now_;
+  const std::optional<Time> sync = std::exchange(sync_period_, std::nullopt);
+  run_until(until);
+  suspended_ += now_ - begin;
+  sync_period_ = sync;
+  next_sync_ = std::max(next_sync_, now_);  // the kernel's timer has expired meanwhile
 }
 
 // ---- the bus ----

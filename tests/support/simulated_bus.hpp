@@ -34,7 +34,8 @@ class SimulatedBus final : public canopen::Bus {
   SimulatedBus(const canbus::RobotBus& bus, Plant& plant);
 
   // ---- canopen::Bus ----
-  canopen::Time now() const override { return now_; }
+  canopen::Time now() const override { return now_ - suspended_; }
+  canopen::Time suspended() override { return suspended_; }
   void send(const canopen::Frame& frame) override;
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override;
   void start_sync(canopen::Time period) override;  // the first one at once, as the kernel does
@@ -61,6 +62,8 @@ class SimulatedBus final : public canopen::Bus {
   void run_until(canopen::Time until);
   // The master is held up: time runs on, and what is sent to it waits in its socket.
   void hold_up_until(canopen::Time until);
+  // The master's computer sleeps: its clock stands still, it sends no SYNC, and what is sent to it is lost.
+  void suspend_until(canopen::Time until);
   // Another master, or the same with a new socket, in which nothing waits.
   void open_socket() { in_socket_.clear(); }
 
@@ -80,6 +83,7 @@ class SimulatedBus final : public canopen::Bus {
 
   RobotSlaves slaves_;
   canopen::Time now_{}, busy_{};
+  canopen::Time suspended_{};  // so far: the master's clock is late by it
   std::vector<Waiting> waiting_;
   std::optional<Waiting> on_bus_;
   canopen::Time frame_ends_ = canopen::Time::max();
