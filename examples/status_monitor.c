@@ -1,5 +1,5 @@
-/* Prints the robot's state twice a second of robot time, without moving it. Usage: status_monitor [COUNT], default 10.
- * It opens the robot as it stands (reset_robot = 0), so it is also a way to see where the last program has left it. */
+/* Prints how the robot was set up, and its state twice a second of robot time, without moving it. Usage:
+ * status_monitor [COUNT], default 10. It opens the robot as it stands (reset_robot = 0), so it is also a way to see where the last program has left it. */
 #include <kenaf/hrt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   config.reset_robot = 0;
   if (result == HRT_OK) result = hrt_kenaf_init_with(&config);
   int bad = failed("init", result);
+  char setup[2000] = "";
+  if (!bad && hrt_get_setup(setup, sizeof setup) == HRT_OK && *setup) printf("%s\n", setup);
   for (int i = 0; i < count && !bad; ++i) {
     bad = (i > 0 && failed("sleep", hrt_sleep(0.5))) || failed("state", hrt_show_status());
   }

@@ -363,6 +363,16 @@ int hrt_get_warning(char* text, size_t size) {
   });
 }
 
+int hrt_get_setup(char* text, size_t size) {
+  return guarded([&] {
+    require(text != nullptr && size > 0, "hrt_get_setup: text is null or size is 0");
+    text[0] = '\0';
+    const std::shared_ptr<Robot> robot = open_robot();
+    text[robot->setup().copy(text, size - 1)] = '\0';
+    throw_if_lost(robot->snapshot());
+  });
+}
+
 int hrt_show_status(void) {
   return guarded([] {
     const Snapshot snapshot = open_robot()->snapshot();

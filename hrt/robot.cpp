@@ -43,6 +43,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
       estimator_({limits_.track_gauge_m, config.turn_efficiency}) {
   try {
     connection_ = transport_->open(config_);
+    setup_ = transport_->setup();
     const std::optional<robot::State> first = transport_->wait_state();
     if (!first) throw Error(HRT_E_INTERNAL, "the transport was interrupted while it was being opened");
     // The first cycle is known before the constructor returns.

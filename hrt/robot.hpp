@@ -71,6 +71,8 @@ class Robot {
   // Does not throw if the robot is lost; otherwise notes that the program has called.
   Snapshot snapshot();
   bool is_lost() const;
+  // What the transport has found and set up when it was opened.
+  const std::string& setup() const { return setup_; }
   // Throws if the link is lost or the robot closed; otherwise notes that the program has called.
   void note_call();
   // Converts a recent moment of the wall clock to robot time, by the newest cycle; nullopt in lock step, where robot
@@ -127,6 +129,7 @@ class Robot {
   const MotionLimits limits_;
   std::unique_ptr<Transport> transport_;
   Connection connection_{};
+  std::string setup_;  // of the opening, constant afterwards
 
   mutable std::mutex mutex_;  // guards all members below
   std::condition_variable call_ended_, program_acted_;

@@ -49,6 +49,9 @@ class Transport {
   // wait_state.
   virtual std::string warning() const { return {}; }
 
+  // Describes what open() has found and set up, in lines without a last line end; "" if there is nothing to say.
+  virtual std::string setup() const { return {}; }
+
   virtual double round_trip_s() const = 0;  // newest, wall clock; 0: not yet known
   virtual bool is_paused() const = 0;       // robot time has been stopped by somebody
 };

@@ -11,6 +11,7 @@
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/drive_targets.hpp"
+#include "libkenaf_real/drive_watches.hpp"
 #include "libkenaf_real/measured_state.hpp"
 #include "libkenaf_real/power.hpp"
 #include "libkenaf_real/translated_errors.hpp"
@@ -42,6 +43,11 @@ std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm
       configured_mm, described_mm);
 }
 
+// One line of both.
+std::string joined(const std::string& one, const std::string& other) {
+  return one + (one.empty() || other.empty() ? "" : "; ") + other;
+}
+
 }  // namespace
 
 struct CanTransport::Session {
@@ -57,7 +63,7 @@ struct CanTransport::Session {
   std::unique_ptr<canopen::Bus> bus;
   Master master;
   BusCycle cycle;
-  std::string gauge_warning;  // "": none
+  std::string setup, set_up_warning;  // of the drives' watches; of what the start has found, "": nothing
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   // beats and late orders during the opening: reported with the first state after it
@@ -80,12 +86,15 @@ hrt::Connection CanTransport::open(const hrt_config& config) {
 hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
-  s.gauge_warning = warning_of_gauge(s.robot, config.track_gauge_mm);
   s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
-  const NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
+  NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
   s.master.watch_pauses(to_time(s.robot.master_silence_s));
   s.cycle.start();
   power_up(s.cycle);
+  begin_event_timers(s.cycle, facts.watches, s.period_s);
+  s.setup = describe_watches(s.robot, facts.watches, s.period_s);
+  s.set_up_warning =
+      joined(warning_of_gauge(s.robot, config.track_gauge_mm), warning_of_watches(s.robot, facts.watches));
   s.measured.emplace(s.robot, facts, s.period_s);
   s.targets.emplace(s.robot, s.cycle.image());
   s.lost = false;
@@ -178,8 +187,11 @@ void CanTransport::close() {
 
 std::string CanTransport::warning() const {
   if (!session_ || !session_->measured) return {};
-  const std::string &of_now = session_->measured->warning(), &of_gauge = session_->gauge_warning;
-  return of_now + (of_now.empty() || of_gauge.empty() ? "" : "; ") + of_gauge;
+  return joined(session_->measured->warning(), session_->set_up_warning);
+}
+
+std::string CanTransport::setup() const {
+  return session_ ? session_->setup : std::string();
 }
 
 double CanTransport::round_trip_s() const {

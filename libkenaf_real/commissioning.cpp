@@ -125,12 +125,7 @@ SdoWrite make_write(const MappedObject& object, std::int64_t value, std::string 
   return {object.object, object.type, value, std::move(purpose)};
 }
 
-void write_heartbeats(Master& master, const NamedNode& node, const RobotBus& bus, bool consumes) {
-  if (consumes) {
-    const auto silence_ms = static_cast<std::uint16_t>(std::lround(1e3 * bus.master_silence_s));
-    master.write(node, make_write(object::consumer_heartbeat_1, canopen::consumer_heartbeat(bus.master, silence_ms),
-                                  "master's heartbeat, whose loss stops the drive"));
-  }
+void write_heartbeat(Master& master, const NamedNode& node, const RobotBus& bus) {
   master.write(node,
                make_write(object::producer_heartbeat_ms, std::lround(1e3 * bus.node_heartbeat_s), "own heartbeat"));
 }
@@ -199,7 +194,7 @@ std::optional<double> set_up_drive(Master& master, const RobotBus& bus, std::siz
   if (pdos.has_effort) used.push_back(pdos.effort);
   if (pdos.has_battery) used.push_back(pdos.battery);
   write_pdos(master, node, used);
-  write_heartbeats(master, node, bus, true);
+  write_heartbeat(master, node, bus);
   const std::optional<std::int64_t> rated_ma =
       bus.has_currents ? master.read_if_there(node, object::rated_current) : std::nullopt;
   return rated_ma ? std::optional(1e-3 * static_cast<double>(*rated_ma)) : std::nullopt;
@@ -213,7 +208,7 @@ double set_up_inclinometer(Master& master, const RobotBus& bus) {
     throw Error(HRT_E_DEVICE, fmt::format("{}: object 0x6000 (resolution) is {}, which CiA 410 does not define",
                                           to_string(node), millidegrees));
   write_pdos(master, node, {canbus::inclinometer_pdo()});
-  write_heartbeats(master, node, bus, false);
+  write_heartbeat(master, node, bus);
   return 1e-3 * static_cast<double>(millidegrees) * std::numbers::pi / 180;
 }
 
@@ -265,6 +260,7 @@ NodeFacts commission(Master& master, const RobotBus& bus, double period_s, doubl
     const std::optional<double> rated_a = set_up_drive(master, bus, i, period_s);
     facts.rated_current_a.push_back(rated_a.value_or(0));
     facts.has_currents = facts.has_currents && rated_a;
+    facts.watches[i] = find_watches(master, bus, i);
   }
   if (bus.inclinometer) facts.slope_unit_rad = set_up_inclinometer(master, bus);
   for (const NamedNode& node : nodes_of(bus))

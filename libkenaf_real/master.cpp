@@ -158,12 +158,13 @@ std::optional<std::int64_t> Master::read_if_there(const NamedNode& node, const M
   return outcome.value.size() >= byte_count(object.type) ? std::optional(number_in(object, outcome)) : std::nullopt;
 }
 
-void Master::write_if_there(const NamedNode& node, const SdoWrite& write) {
+bool Master::write_if_there(const NamedNode& node, const SdoWrite& write) {
   canopen::SdoClient client(node.node, answer_patience_);
   const SdoOutcome outcome =
       run(client, client.begin_write(write.object, encode_number(write.type, write.value), now()));
   if (outcome.abort && !is_missing(outcome))
     fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome);
+  return !outcome.abort;
 }
 
 }  // namespace kenaf::real

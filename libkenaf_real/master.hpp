@@ -71,9 +71,9 @@ class Master {
   // Throw hrt::Error(HRT_E_DEVICE) naming node, object, purpose and reason: aborted by the node, or no answer.
   std::int64_t read(const NamedNode& node, const canopen::MappedObject& object, std::string_view purpose);
   void write(const NamedNode& node, const canopen::SdoWrite& write);
-  // nullopt if the node has no such object.
+  // nullopt or false if the node has no such object.
   std::optional<std::int64_t> read_if_there(const NamedNode& node, const canopen::MappedObject& object);
-  void write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
+  bool write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
 
  private:
   void send_heartbeat();

@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "can/canopen/device.hpp"
 #include "hrt/error.hpp"
 #include "libkenaf_real/commissioning.hpp"
+#include "libkenaf_real/drive_watches.hpp"
 
 namespace kenaf::real {
 namespace {
@@ -228,15 +228,6 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
   return fmt::format("{} stays in the state \"{}\"", name, describe(state));
 }
 
-// A drive that rejects this is at rest all the same; its reaction to the end of the heartbeat is then as configured at
-// the start.
-void end_watch(BusCycle& cycle, std::size_t i) try {
-  const canopen::MappedObject& watch = object::consumer_heartbeat_1;
-  cycle.master().write(drive_node(cycle.bus(), i),
-                       {watch.object, watch.type, 0, "end of the watch for the master's heartbeat"});
-} catch (const Error&) {
-}
-
 }  // namespace
 
 void power_up(BusCycle& cycle) try {
@@ -292,7 +283,7 @@ std::string power_down(BusCycle& cycle) {
     }
   } while (!running.empty() && cycle.master().now() < begin + kPowerDown);
   for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
-    if (has_stopped(i)) end_watch(cycle, i);
+    if (has_stopped(i)) end_watches(cycle, i);
   }
   return running;
 }

@@ -24,9 +24,9 @@ void try_quick_stop(BusCycle& cycle);
 [[noreturn]] void lose(BusCycle& cycle, std::size_t drive);
 
 // Commands quick stop in each cycle until all drives show that they have left operation enabled and the tracks that
-// they stand, 0.3 s at most. Drives that have done so stop watching the master's heartbeat and hold their position; the
-// others keep watching, and so stop by themselves when the heartbeat ends. Returns a description of these, "" if there
-// are none. Throws BusError.
+// they stand, 0.3 s at most. Drives that have done so stop watching the master's heartbeat and commands and hold their
+// position; the others keep watching, and so stop by themselves when these end. Returns a description of these, "" if
+// there are none. Throws BusError.
 std::string power_down(BusCycle& cycle);
 
 }  // namespace kenaf::real

@@ -45,6 +45,12 @@ std::string get_warning() {
   return text.data();
 }
 
+std::string get_setup() {
+  std::array<char, kMostWarning> text{};
+  call(hrt_get_setup, text.data(), text.size());
+  return text.data();
+}
+
 // Stops the robot whatever ends the block; an error of closing does not hide one of the block.
 bool exit_session(const py::object&, const py::object& raised, const py::object&, const py::object&) {
   try {
@@ -140,6 +146,8 @@ void add_waiting(py::module_& module) {
 
 void add_state_and_recording(py::module_& module) {
   module.def("get_state", &get_state, "Returns the newest State. Does not block.");
+  module.def("get_setup", &get_setup,
+             "Returns how init() has set the robot up, in lines; \"\" if there is nothing to say.");
   module.def("get_warning", &get_warning, "Returns what is missing on the robot, one line; \"\" if nothing is.");
   module.def(
       "record_start", [](const std::string& path) { call(hrt_record_start, path.c_str()); }, py::arg("path"),

@@ -257,6 +257,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   // Heartbeats, measured quantities and answer time-out of the nodes.
   bus.node_heartbeat_s = table.number("node_heartbeat_s", {.min = 0.01, .max = 10});
   bus.has_currents = !table.has("currents") || table.boolean("currents");
+  if (table.has("event_timer")) bus.event_timer = table.boolean("event_timer");
   bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
   bus.stop_within_s = table.number_or("stop_within_s", bus.stop_within_s, kStopWithin);

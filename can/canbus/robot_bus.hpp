@@ -80,9 +80,12 @@ struct RobotBus {
   double answer_s;             // patience for each answer during set-up
   double stop_within_s = 0.2;  // limit of longest_stop_s()
   bool has_currents = true;    // the drives measure their current
-  bool has_battery = true;     // the first drive measures the voltage of its supply
-  double track_gauge_m;        // between the tracks' centre lines; 0: not in the description
-  double speed_loop_s;         // time constant of the track drives' own speed control: for simulated ones only
+  // Whether the drives' RPDO1 has an event timer, by which they stop when commands stay away. true: a drive without one
+  // is refused; false: none is used; nullopt: used where there is one.
+  std::optional<bool> event_timer;
+  bool has_battery = true;  // the first drive measures the voltage of its supply
+  double track_gauge_m;     // between the tracks' centre lines; 0: not in the description
+  double speed_loop_s;      // time constant of the track drives' own speed control: for simulated ones only
   // Those of the left side, at least one, front first; those of the right side, likewise; the flippers that the robot
   // has, in the order of robot::Flipper. All of a side are commanded the same speed.
   std::vector<DriveOnBus> drives;

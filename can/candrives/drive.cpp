@@ -34,7 +34,10 @@ std::int64_t limited(double value, canopen::ObjectType type) {
 }  // namespace
 
 Drive::Drive(const DriveSetup& setup, const Measured& motor)
-    : Slave(setup.node, identity(setup), drive_pdos()), setup_(setup), motor_(motor), motion_(objects(), setup.scale) {
+    : Slave(setup.node, identity(setup), drive_pdos(setup.has_event_timer)),
+      setup_(setup),
+      motor_(motor),
+      motion_(objects(), setup.scale) {
   add_drive_objects(dictionary(), {setup.has_current, setup.has_voltage});
   on_reset();
 }
@@ -153,11 +156,11 @@ void Drive::begin_quick_stop() {
   if (option(object::quick_stop_option) == kDisableDrive) power_.disable_voltage();
 }
 
-void Drive::on_connection_lost() {
+void Drive::on_connection_lost(std::uint16_t error_code) {
   if (power_.state() != PowerState::operation_enabled) return;
   switch (option(object::abort_connection_option)) {
     case kAbortByFault:
-      return fail(canopen::kErrorHeartbeat);
+      return fail(error_code);
     case kAbortByDisableVoltage:
       return power_.disable_voltage();
     case canopen::kAbortByQuickStop:

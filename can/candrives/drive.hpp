@@ -14,9 +14,10 @@ struct DriveSetup {
   canopen::NodeId node;
   std::string name;
   MotorScale scale;
-  bool absolute_encoder;    // false: position 0 is where the motor is at power on, until homing
-  bool has_current = true;  // false: without the objects 0x6075 and 0x6078
-  bool has_voltage = true;  // false: without the object 0x6079
+  bool absolute_encoder;        // false: position 0 is where the motor is at power on, until homing
+  bool has_current = true;      // false: without the objects 0x6075 and 0x6078
+  bool has_voltage = true;      // false: without the object 0x6079
+  bool has_event_timer = true;  // false: its RPDOs have no sub-index 5
 };
 
 class Drive final : public Slave {
@@ -47,7 +48,7 @@ class Drive final : public Slave {
   void refresh() override;
   std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress at, std::int64_t value) override;
   void on_write(canopen::ObjectAddress at, std::int64_t value) override;
-  void on_connection_lost() override;
+  void on_connection_lost(std::uint16_t error_code) override;
   void on_controlword(std::uint16_t controlword);
   void begin_quick_stop();
   void watch_following(double step_s);

@@ -95,10 +95,11 @@ void add_drive_objects(Dictionary& objects, OptionalDriveObjects has) {
   objects.add(object::interpolation_exponent, Access::read_write, Mappable::no, -3, {-6, 0});
 }
 
-std::vector<DefaultPdo> drive_pdos() {
+std::vector<DefaultPdo> drive_pdos(bool has_event_timer) {
   std::vector<DefaultPdo> pdos;
   const auto add = [&](PdoDirection direction, std::uint8_t number, std::vector<canopen::MappedObject> mapped) {
-    pdos.push_back({{direction, number, 255, std::move(mapped)}, number == 1});
+    pdos.push_back(
+        {.pdo = {direction, number, 255, std::move(mapped)}, .valid = number == 1, .has_event_timer = has_event_timer});
   };
   add(PdoDirection::receive, 1, {object::controlword});
   add(PdoDirection::receive, 2, {object::controlword, object::mode});

@@ -36,7 +36,7 @@ void add_drive_objects(Dictionary& objects, OptionalDriveObjects has);
 
 // CiA 402-2, default PDO mapping: the controlword and its companions, the statusword and its companions. Initially only
 // the first of each kind is valid.
-std::vector<DefaultPdo> drive_pdos();
+std::vector<DefaultPdo> drive_pdos(bool has_event_timer);
 
 // nullopt: the profile and these drives support the value. Numeric limits are already in its entry.
 std::optional<canopen::SdoAbort> check_drive_object(canopen::ObjectAddress object, std::int64_t value);

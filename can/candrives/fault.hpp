@@ -14,6 +14,8 @@ enum class FaultKind : std::uint8_t {
   error,             // internal error of a drive: fault reaction, fault, emergency message with error_code
   following_error,   // the same with 0x8611 and its statusword bit
   deaf,              // a drive receives controlwords and ignores them
+  no_heartbeat,      // it does not notice that the master's heartbeat ends
+  no_event_timer,    // it does not notice that its RPDOs stay away
   sdo_abort,         // each SDO request is answered by an abort
   sdo_late,          // each SDO answer is delayed by kLateBy
   sdo_wrong_toggle,  // each segment's answer has the wrong toggle bit

@@ -23,6 +23,8 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"fault", FaultKind::error},
                                                     {"following error", FaultKind::following_error},
                                                     {"deaf", FaultKind::deaf},
+                                                    {"no heartbeat watch", FaultKind::no_heartbeat},
+                                                    {"no event timer", FaultKind::no_event_timer},
                                                     {"sdo abort", FaultKind::sdo_abort},
                                                     {"sdo late", FaultKind::sdo_late},
                                                     {"sdo wrong toggle", FaultKind::sdo_wrong_toggle},

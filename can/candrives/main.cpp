@@ -42,8 +42,8 @@ constexpr const char* kFaultHelp =
     R"(A fault, now or later, any number of times; standard input takes the same, a line each:
   WHO WHAT [at SECONDS | SECONDS after motion] [for SECONDS]
 WHO:  node NUMBER, track left, flipper front left, ..., inclinometer, gyro, all, bus
-WHAT: silent, power loss, fault CODE, following error, deaf, sdo abort, sdo late, sdo wrong toggle,
-      short pdos, garbage, healed
+WHAT: silent, power loss, fault CODE, following error, deaf, no heartbeat watch, no event timer, sdo abort,
+      sdo late, sdo wrong toggle, short pdos, garbage, healed
 As: --fault "node 3 silent at 5" --fault "track left fault 0x2310 0.5 after motion")";
 
 std::optional<Options> read_options(int argc, char** argv, int& exit_status) {

@@ -27,7 +27,8 @@ DriveSetup drive_setup(const canbus::RobotBus& bus, std::size_t drive) {
                     .home_offset_direction = on_bus.homing ? on_bus.homing->offset_direction : 1},
           .absolute_encoder = on_bus.is_flipper() && !on_bus.homing,
           .has_current = bus.has_currents,
-          .has_voltage = bus.has_battery};
+          .has_voltage = bus.has_battery,
+          .has_event_timer = bus.event_timer.value_or(true)};
 }
 
 Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantState& state) {

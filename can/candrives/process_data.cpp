@@ -45,13 +45,12 @@ ProcessData::ProcessData(canopen::NodeId node, Dictionary& objects, const std::v
     // Communication record; sub-index 0 is the highest sub-index that it has.
     const std::uint32_t id =
         cob_id(pdo, node) | (transmit ? canopen::kPdoNoRemoteRequest : 0) | (with.valid ? 0 : canopen::kPdoInvalid);
-    add(state.communication, 0, ObjectType::unsigned8, Access::read_only, transmit ? kEventTimer : kTransmission);
+    const bool has_timer = transmit || with.has_event_timer;
+    add(state.communication, 0, ObjectType::unsigned8, Access::read_only, has_timer ? kEventTimer : kTransmission);
     add(state.communication, kCobId, ObjectType::unsigned32, Access::read_write, id);
     add(state.communication, kTransmission, ObjectType::unsigned8, Access::read_write, pdo.transmission);
-    if (transmit) {
-      add(state.communication, kInhibit, ObjectType::unsigned16, Access::read_write, with.inhibit_100us);
-      add(state.communication, kEventTimer, ObjectType::unsigned16, Access::read_write, with.event_ms);
-    }
+    if (transmit) add(state.communication, kInhibit, ObjectType::unsigned16, Access::read_write, with.inhibit_100us);
+    if (has_timer) add(state.communication, kEventTimer, ObjectType::unsigned16, Access::read_write, with.event_ms);
 
     // Mapping record: all eight entries exist, those beyond the count are 0.
     add(state.mapping, 0, ObjectType::unsigned8, Access::read_write, static_cast<std::int64_t>(pdo.objects.size()));
@@ -113,7 +112,11 @@ std::optional<SdoAbort> ProcessData::check_mapping(const State& state, std::uint
 
 void ProcessData::on_written(ObjectAddress object) {
   for (State& state : pdos_) {
-    if (object.index == state.communication || object.index == state.mapping) begin(state);
+    if (object.index == state.communication && object.sub == kEventTimer && !state.transmit) {
+      state.overdue_at = Time::max();  // and what was received stays
+    } else if (object.index == state.communication || object.index == state.mapping) {
+      begin(state);
+    }
   }
 }
 
@@ -125,6 +128,7 @@ void ProcessData::begin(State& state) {
   state.pending = false;
   state.syncs = 0;
   state.sent.reset();
+  state.overdue_at = Time::max();
 }
 
 bool ProcessData::is_valid(const State& state) const {
@@ -140,7 +144,8 @@ bool ProcessData::is_event_driven(const State& state) const {
 }
 
 Time ProcessData::event_time(const State& state) const {
-  return std::chrono::milliseconds(objects_->value({state.communication, kEventTimer}));
+  const ObjectEntry* timer = objects_->find({state.communication, kEventTimer});
+  return std::chrono::milliseconds(timer == nullptr ? 0 : timer->value);
 }
 
 Time ProcessData::inhibit_time(const State& state) const {
@@ -172,11 +177,12 @@ Frame ProcessData::pack(const State& state) const {
   return canopen::make_frame(static_cast<std::uint16_t>(objects_->value({state.communication, kCobId}) & 0x7ff), data);
 }
 
-ProcessData::Reception ProcessData::on_frame(const Frame& frame) {
+ProcessData::Reception ProcessData::on_frame(const Frame& frame, Time now) {
   for (State& state : pdos_) {
     if (state.transmit || !is_active(state)) continue;
     if ((objects_->value({state.communication, kCobId}) & 0x7ff) != frame.id) continue;
     if (frame.length < bytes(state)) return Reception::too_short;
+    if (const Time event = event_time(state); event > Time::zero()) state.overdue_at = now + event;
     state.received = frame.data;
     state.pending = true;
     if (is_event_driven(state)) {
@@ -187,6 +193,16 @@ ProcessData::Reception ProcessData::on_frame(const Frame& frame) {
     return Reception::taken;
   }
   return Reception::not_for_me;
+}
+
+bool ProcessData::take_overdue(Time now) {
+  bool is_overdue = false;
+  for (State& state : pdos_) {
+    if (now < state.overdue_at) continue;
+    state.overdue_at = Time::max();
+    is_overdue = true;
+  }
+  return is_overdue;
 }
 
 void ProcessData::take(State& state, std::vector<Dictionary::Number>& numbers) const {
@@ -235,6 +251,7 @@ void ProcessData::on_time(Time now, Frames& out) {
 Time ProcessData::deadline() const {
   Time earliest = Time::max();
   for (const State& state : pdos_) {
+    earliest = std::min(earliest, state.overdue_at);
     if (!state.transmit || !is_active(state) || !is_event_driven(state)) continue;
     const Time event = event_time(state);
     if (event == Time::zero() || !state.sent) continue;

@@ -5,12 +5,13 @@
 //     1  COB-ID; bit 31 set: this PDO is invalid         0     how many objects are mapped; 0: none
 //     2  transmission type                               1..8  index << 16 | sub-index << 8 | bits
 //     3  inhibit time, 100 us (TPDO)
-//     5  event timer, ms (TPDO)
+//     5  event timer, ms: a TPDO is sent at the latest then; an RPDO must come again within it
 //
 // Order of a change (CiA 301, 7.5.2.36 and 7.5.2.38): PDO invalid, count to 0, objects, count, PDO valid. Any other
 // order is refused. Transmission types (7.5.2.35 and 7.5.2.37): 0 = at the SYNC after a change, 1 to 240 = at every
 // n-th SYNC, 254 and 255 = when the data changes or the event timer expires; for an RPDO 0 to 240 = takes effect at the
-// next SYNC, 254 and 255 = at once. Remote requests (252, 253) are refused, as CiA 301 advises against them.
+// next SYNC, 254 and 255 = at once. Remote requests (252, 253) are refused, as CiA 301 advises against them. The event
+// timer of an RPDO (7.5.2.35) is optional; it begins with the first reception after it was written.
 #pragma once
 
 #include <array>
@@ -28,6 +29,7 @@ struct DefaultPdo {
   canopen::Pdo pdo;
   bool valid = true;
   std::uint16_t inhibit_100us = 0, event_ms = 0;  // TPDO
+  bool has_event_timer = true;                    // RPDO: false: its record ends with sub-index 2
 };
 
 class ProcessData {
@@ -44,13 +46,15 @@ class ProcessData {
   void begin();
 
   enum class Reception { not_for_me, taken, too_short };
-  Reception on_frame(const canopen::Frame& frame);
+  Reception on_frame(const canopen::Frame& frame, canopen::Time now);
+  // True once after the event timer of an RPDO has expired.
+  bool take_overdue(canopen::Time now);
   // Writes data received by synchronous RPDOs, then sends synchronous TPDOs. `refresh`, called between the two, brings
   // measurements into the dictionary.
   void on_sync(canopen::Time now, const std::function<void()>& refresh, Frames& out);
   // Sends event-driven TPDOs whose data has changed or whose event timer has expired.
   void on_time(canopen::Time now, Frames& out);
-  // Next event timer; Time::max(): none.
+  // The next event timer to expire; Time::max(): none.
   canopen::Time deadline() const;
   // True if some TPDO is sent on change, so that the data should be kept up to date.
   bool follows_data() const;
@@ -64,6 +68,7 @@ class ProcessData {
     std::uint8_t syncs = 0;  // since the last transmission
     std::optional<canopen::Frame> sent{};
     canopen::Time sent_at{};
+    canopen::Time overdue_at = canopen::Time::max();  // RPDO: unless it is received before
   };
   bool is_valid(const State& state) const;
   bool is_active(const State& state) const;  // valid, and something is mapped

@@ -178,6 +178,10 @@ void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
     case FaultKind::deaf:
       if (drive != nullptr) drive->set_deaf(true);
       return;
+    case FaultKind::no_heartbeat:
+      return node.slave->ignore_heartbeat(true);
+    case FaultKind::no_event_timer:
+      return node.slave->ignore_event_timer(true);
     case FaultKind::sdo_abort:
       node.faults.sdo_abort = true;
       return;
@@ -194,6 +198,8 @@ void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
       return;
     case FaultKind::healed:
       node.faults = {};
+      node.slave->ignore_heartbeat(false);
+      node.slave->ignore_event_timer(false);
       if (drive != nullptr) drive->set_deaf(false);
       return;
   }

@@ -81,7 +81,9 @@ void Slave::boot(Time now, Frames& out) {
 
 void Slave::reset_communication() {
   objects_.reset(kFirstCommunicationObject, kLastCommunicationObject);
-  errors_.forget(canopen::kErrorHeartbeat);  // the watch is off again; boot-up is the first message
+  // the watches are off again; boot-up is the first message
+  errors_.forget(canopen::kErrorHeartbeat);
+  errors_.forget(canopen::kErrorPdoTimeOut);
   sdo_ = canopen::SdoServer(node_, object_access());
   next_heartbeat_ = master_lost_at_ = Time::max();
   heartbeat_changed_ = false;
@@ -100,11 +102,11 @@ void Slave::on_order(NmtCommand command, Time now, Frames& out) {
       return enter(NmtState::pre_operational);
     case NmtCommand::stop:
       enter(NmtState::stopped);
-      return on_connection_lost();
+      return on_connection_lost(canopen::kErrorHeartbeat);
     case NmtCommand::reset_node:
       return power_on(now, out);
     case NmtCommand::reset_communication:
-      on_connection_lost();  // before the objects that configure the reaction are reset
+      on_connection_lost(canopen::kErrorHeartbeat);  // before the objects that configure the reaction are reset
       reset_communication();
       return boot(now, out);
   }
@@ -113,8 +115,9 @@ void Slave::on_order(NmtCommand command, Time now, Frames& out) {
 // ---- frames ----
 
 void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
-  // The master's heartbeat may have expired before this frame came.
+  // The master's heartbeat, or the time of its commands, may have expired before this frame came.
   watch_master(now);
+  watch_commands(now);
   // By kind: NMT for this node or all, heartbeats, SYNC, SDO (not while stopped), and PDOs (operational only).
   if (const auto order = canopen::nmt_order_from(frame)) {
     if (order->node == 0 || order->node == node_) on_order(order->command, now, out);
@@ -126,7 +129,7 @@ void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
     if (state_ == NmtState::stopped) return;
     if (const auto answer = sdo_.on_frame(frame)) out.push_back(*answer);
   } else if (state_ == NmtState::operational) {
-    switch (process_data_.on_frame(frame)) {
+    switch (process_data_.on_frame(frame, now)) {
       case ProcessData::Reception::not_for_me:
         return;
       case ProcessData::Reception::too_short:
@@ -134,6 +137,7 @@ void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
         break;
       case ProcessData::Reception::taken:
         errors_.clear(canopen::kErrorPdoTooShort);
+        errors_.clear(canopen::kErrorPdoTimeOut);
         break;
     }
   }
@@ -154,7 +158,7 @@ void Slave::on_sync(const Frame& frame, Time now, Frames& out) {
 void Slave::on_heartbeat(const canopen::Heartbeat& heartbeat, Time now) {
   const std::int64_t watched = objects_.value(canopen::object::consumer_heartbeat_1.object);
   const auto patience = std::chrono::milliseconds(watched & 0xffff);
-  if (patience.count() == 0 || heartbeat.node != watched >> 16) return;
+  if (heartbeat_ignored_ || patience.count() == 0 || heartbeat.node != watched >> 16) return;
   master_lost_at_ = now + patience;
   errors_.clear(canopen::kErrorHeartbeat);
 }
@@ -166,7 +170,20 @@ void Slave::watch_master(Time now) {
   const std::int64_t behaviour = objects_.value(canopen::object::communication_error_behaviour.object);
   if (behaviour == kToPreOperational && state_ == NmtState::operational) enter(NmtState::pre_operational);
   if (behaviour == kStop) enter(NmtState::stopped);
-  on_connection_lost();
+  on_connection_lost(canopen::kErrorHeartbeat);
+}
+
+void Slave::ignore_heartbeat(bool ignore) {
+  heartbeat_ignored_ = ignore;
+  if (ignore) master_lost_at_ = Time::max();
+}
+
+// ---- commands ----
+
+void Slave::watch_commands(Time now) {
+  if (state_ != NmtState::operational || !process_data_.take_overdue(now) || event_timer_ignored_) return;
+  errors_.raise(canopen::kErrorPdoTimeOut);
+  on_connection_lost(canopen::kErrorPdoTimeOut);
 }
 
 // ---- time ----
@@ -174,6 +191,7 @@ void Slave::watch_master(Time now) {
 void Slave::on_time(Time now, Frames& out) {
   if (state_ == NmtState::boot_up) return;
   watch_master(now);
+  watch_commands(now);
   const auto period = std::chrono::milliseconds(objects_.value(canopen::object::producer_heartbeat_ms.object));
   if (std::exchange(heartbeat_changed_, false)) next_heartbeat_ = period.count() > 0 ? now : Time::max();
   if (now >= next_heartbeat_) {

@@ -2,7 +2,7 @@
 //
 //   NMT          boot-up message, pre-operational, operational, stopped; the two resets                   7.2.8, 7.3.2
 //   SDO          its object dictionary, read and written by the master                                    7.2.4
-//   PDO, SYNC    process_data.hpp                                                                         7.2.2, 7.2.5
+//   PDO, SYNC    process_data.hpp; RPDOs that stay away for longer than their event timer                 7.2.2, 7.2.5
 //   heartbeat    its own (object 0x1017), and the master's, which it watches (0x1016)                     7.2.8.2.2
 //   emergency    error_state.hpp                                                                          7.2.7
 //
@@ -54,6 +54,10 @@ class Slave {
   // True if it sends PDOs on data changes, so that on_time should be called after every change.
   bool follows_data() const;
 
+  // Faults: it does not notice that the master's heartbeat ends, or that RPDOs stay away.
+  void ignore_heartbeat(bool ignore);
+  void ignore_event_timer(bool ignore) { event_timer_ignored_ = ignore; }
+
  protected:
   // The deriving class adds the objects of its device profile in its constructor.
   Dictionary& dictionary() { return objects_; }
@@ -66,8 +70,9 @@ class Slave {
   virtual std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress, std::int64_t) { return std::nullopt; }
   virtual void on_write(canopen::ObjectAddress, std::int64_t) {}
   // The master is gone or has cut the connection: heartbeat lost, NMT stop, or communication reset; the list of CiA
-  // 402-2, abort connection option code.
-  virtual void on_connection_lost() {}
+  // 402-2, abort connection option code. The same, chosen, where an RPDO stays away: CiA 301 leaves that to the device.
+  // `error_code`: of the emergency message that tells the cause.
+  virtual void on_connection_lost(std::uint16_t error_code) { static_cast<void>(error_code); }
 
  private:
   canopen::ObjectAccess object_access();
@@ -78,6 +83,7 @@ class Slave {
   void on_sync(const canopen::Frame& frame, canopen::Time now, Frames& out);
   void on_heartbeat(const canopen::Heartbeat& heartbeat, canopen::Time now);
   void watch_master(canopen::Time now);
+  void watch_commands(canopen::Time now);
   void send_messages(canopen::Time now, Frames& out);
   std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value);
   void written(canopen::ObjectAddress object, std::int64_t value);
@@ -90,7 +96,8 @@ class Slave {
   canopen::NmtState state_ = canopen::NmtState::boot_up;
   canopen::Time next_heartbeat_ = canopen::Time::max();
   canopen::Time master_lost_at_ = canopen::Time::max();  // max: not received yet, or already lost
-  bool heartbeat_changed_ = false;                       // object 0x1017 was written: takes effect at once
+  bool heartbeat_ignored_ = false, event_timer_ignored_ = false;
+  bool heartbeat_changed_ = false;  // object 0x1017 was written: takes effect at once
 };
 
 }  // namespace kenaf::candrives

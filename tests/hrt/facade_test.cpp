@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -157,6 +158,7 @@ TEST_CASE("Without a robot every call says so") {
   CHECK(hrt_record_stop() == HRT_E_NOT_INITIALISED);
   char warning[] = "what the caller had here";
   CHECK(hrt_get_warning(warning, sizeof warning) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_get_setup(warning, sizeof warning) == HRT_E_NOT_INITIALISED);
   CHECK(std::string(warning).empty());
   CHECK(hrt_time() == -1);
   CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_kenaf_init()"));
@@ -206,6 +208,20 @@ TEST_CASE("Every error has a name, and only those") {
   CHECK(std::string(hrt_error_name(1)) == "unknown error");
   CHECK(std::string(hrt_error_name(HRT_E_INTERNAL - 1)) == "unknown error");
   CHECK(std::string(hrt_version()) == "0.1.0");
+}
+
+TEST_CASE("What init has set up is told in as many bytes as there are") {
+  const auto robot = use_fake_robot();
+  robot->setup = "track left watches its commands\ntrack right watches its commands";
+  const Open open;
+  std::array<char, 1000> text{};
+  REQUIRE(hrt_get_setup(text.data(), text.size()) == HRT_OK);
+  CHECK(text.data() == robot->setup);
+  text.fill('x');
+  REQUIRE(hrt_get_setup(text.data(), 11) == HRT_OK);
+  CHECK(std::string(text.data(), 12) == std::string("track left\0x", 12));
+  CHECK(hrt_get_setup(nullptr, 1) == HRT_E_ARGUMENT);
+  CHECK(hrt_get_setup(text.data(), 0) == HRT_E_ARGUMENT);
 }
 
 TEST_CASE("A second init is busy, a closed robot can be opened again") {

@@ -45,10 +45,23 @@ TEST_CASE("Closing stops a track also where its first order to stop is lost") {
   CHECK(robot.all_are(PowerState::quick_stop_active));
 }
 
-TEST_CASE("Closing leaves a drive that does not stop to its own watch, and names it") {
+TEST_CASE("A drive that does not get its quick stop misses its commands, and closing sees it stop by that") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
+  robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
+    return sender != Sender::master || frame.id != 0x202 || word_of(frame) != canopen::kControlQuickStop;
+  };
+  CHECK(error_of_closing(robot).code() == HRT_OK);
+  CHECK(robot.stands());
+  CHECK(robot.all_are(PowerState::quick_stop_active));
+}
+
+TEST_CASE("Closing leaves a drive that does not stop to its watch of the heartbeat, and names it") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(50, drive_at(0.2, 0.2));
+  robot.wire.inject({candrives::FaultKind::no_event_timer, 2});
   robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
     return sender != Sender::master || frame.id != 0x202 || word_of(frame) != canopen::kControlQuickStop;
   };

@@ -34,6 +34,9 @@ TEST_CASE("Faults are read from words", "[fault script]") {
   CHECK(fault.after_motion);
   CHECK(fault.lasts == 2s);
 
+  CHECK(read("track left no heartbeat watch").fault.kind == FaultKind::no_heartbeat);
+  CHECK(read("all no event timer 0.5 after motion").fault.kind == FaultKind::no_event_timer);
+
   fault = read("bus garbage for 1");
   CHECK(fault.fault.kind == FaultKind::garbage);
   CHECK(fault.at_once);

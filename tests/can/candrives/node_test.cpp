@@ -108,3 +108,16 @@ TEST_CASE("The master's heartbeat is watched from the first that was heard", "[n
     CHECK(robot.wait(1).size() == 1);
   }
 }
+
+TEST_CASE("A node with the fault \"no heartbeat watch\" does not miss its master", "[node]") {
+  EasyRobot robot;
+  robot.send("601#2316100164007F00");
+  robot.send("77F#05");
+  robot.inject({FaultKind::no_heartbeat, 1});
+  CHECK(robot.wait(1000).empty());
+  robot.send("77F#05");
+  CHECK(robot.wait(1000).empty());
+  robot.inject({FaultKind::healed, 1});
+  robot.send("77F#05");
+  CHECK(robot.wait(100).size() == 1);
+}

@@ -160,3 +160,65 @@ TEST_CASE("A PDO's values are in place before its controlword acts", "[pdo]") {
   robot.wait(500);
   CHECK(robot.value(3, 0x6064) == 100);
 }
+
+TEST_CASE("Commands that stay away for longer than the event timer stop the drive, from the first one after it was set",
+          "[pdo]") {
+  EasyRobot robot;
+  map_velocity(robot);
+  robot.write(1, kTpdo1, 1, 4, 0xc0000181);  // off: it would tell each new statusword
+  robot.write(1, 0x6007, 0, 2, 3);           // quick stop where the master is lost
+  robot.write(1, 0x605a, 0, 2, 6);
+  robot.write(1, 0x6085, 0, 4, 50'000);
+  robot.send("000#0101");
+  robot.enable(1, 3);
+  CHECK(robot.write(1, kRpdo1, 5, 2, 50) == done(kRpdo1, 5));
+  CHECK(robot.wait(1000).empty());  // none has come since
+  const auto command = [&] {
+    robot.send("201#0F0088130000");  // enable, 5000 counts/s
+    robot.send("080#");
+  };
+  command();
+  robot.wait(49);
+  command();
+  robot.send("201#0F0088");  // too short: no command
+  robot.wait(1);
+  CHECK(robot.wait(48).empty());
+  CHECK(robot.drive(0).power_state() == PowerState::operation_enabled);
+  SECTION("quick stop, and an emergency message, 0x8250, generic and communication") {
+    CHECK(robot.wait(1) == Lines{"081#5082110000000000"});
+    CHECK(robot.drive(0).power_state() == PowerState::quick_stop_active);
+    CHECK(robot.slaves.slave(1)->state() == canopen::NmtState::operational);
+    CHECK(robot.wait(1000).empty());
+    // a command of full length ends both errors
+    CHECK(robot.send("201#020000000000") == Lines{"081#0000110000000000", "081#0000000000000000"});
+  }
+  SECTION("0 ends the watch") {
+    robot.write(1, kRpdo1, 5, 2, 0);
+    CHECK(robot.wait(1000).empty());
+    CHECK(robot.drive(0).power_state() == PowerState::operation_enabled);
+  }
+  SECTION("a communication reset ends the watch and resets the timer") {
+    robot.send("000#8201");
+    CHECK(robot.value(1, kRpdo1, 5) == 0);
+    robot.send("000#0101");
+    // the reset is a loss of its own (CiA 402-2, 0x6007), and TPDO1 is as from the factory again: 0x0617, quick stop
+    CHECK(robot.wait(1000) == Lines{"181#1706"});
+  }
+  SECTION("a drive with this fault goes on") {
+    robot.inject({FaultKind::no_event_timer, 1});
+    CHECK(robot.wait(1000).empty());
+    CHECK(robot.drive(0).power_state() == PowerState::operation_enabled);
+    robot.inject({FaultKind::healed, 1});
+    command();
+    CHECK(robot.wait(50).size() == 1);
+  }
+}
+
+TEST_CASE("A drive of a robot without event timers has none in its RPDOs", "[pdo]") {
+  canbus::RobotBus bus = easy_robot();
+  bus.event_timer = false;
+  EasyRobot robot(IdealPlant(), bus);
+  CHECK(robot.value(1, kRpdo1, 0) == 2);
+  CHECK(robot.write(1, kRpdo1, 5, 2, 50) == refused(kRpdo1, 5, 0x06090011));
+  CHECK(robot.value(1, kTpdo1, 0) == 5);
+}
