@@ -16,7 +16,7 @@ struct NodeFacts {
   bool has_currents =
       true;  // false: a rated current is missing, without which a drive's current in thousandths of it has no meaning
   double slope_unit_rad = 0;  // unit of the inclinometer's numbers
-  AllWatches watches{};
+  AllWatches watches;
 };
 
 // Refuses a bus that already has a master; starts the master's heartbeat, which continues from here; resets the

@@ -10,8 +10,8 @@
 // its maker's choice for the event timer: most do the same.
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
@@ -21,7 +21,7 @@ namespace kenaf::real {
 struct DriveWatches {
   bool heartbeat = false, event_timer = false;
 };
-using AllWatches = std::array<DriveWatches, canbus::kDriveCount>;
+using AllWatches = std::vector<DriveWatches>;  // of RobotBus::drives
 
 // How long commands may stay away: master_silence_s, but three cycles at least, so that a lost frame stops nothing.
 double longest_command_gap_s(const canbus::RobotBus& bus, double period_s);

@@ -176,8 +176,8 @@ TEST_CASE("Closing ends both watches: the drives hold their position without a m
   robot.open();
   robot.run(20, drive_at(0.2, 0.2));
   robot.transport.close();
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
-    const auto& objects = robot.wire.slaves().slave(robot.description.drives[i].node)->objects();
+  for (const canbus::DriveOnBus& drive : robot.description.drives) {
+    const auto& objects = robot.wire.slaves().slave(drive.node)->objects();
     CHECK(objects.value({0x1016, 1}) == 0);
     CHECK(objects.value({0x1400, 5}) == 0);
   }

@@ -90,7 +90,7 @@ TEST_CASE("A computer that was suspended says nothing but quick stop when it wak
         CHECK_THAT(error.what(), Catch::Contains(have_stopped ? "this computer was suspended for 5.00 s"
                                                               : "this computer was suspended for 0.03 s"));
       }
-      CHECK(*words == std::vector<std::uint16_t>(canbus::kDriveCount, canopen::kControlQuickStop));
+      CHECK(*words == std::vector<std::uint16_t>(robot.description.drives.size(), canopen::kControlQuickStop));
       // the next session counts anew
       robot.transport.close();
       robot.open();
