@@ -1,18 +1,21 @@
 // The control loop of libkenaf_real on a bus: regularity of its cycles, answer time of the nodes, and the number of
 // late and lost cycles.
 //
-//   scripts/with-vcan.sh build/release/bin/can_loop [--interface vcan0] [--cycles 1000] [--period 0.01]
+//   scripts/with-vcan.sh build/release/bin/can_loop [--interface vcan0] [--cycles 1000] [--period 0.01] [--robot kenaf]
 //
-// Starts kenaf-candrives with ideal motors on the interface, opens the robot, commands both tracks in each cycle, and
-// prints by wall clock: the time between two cycles as the program sees them, and from SYNC to the last node's answer.
-// No limit: the figures depend on the machine.
+// Starts kenaf-candrives with ideal motors on the interface (--no-drives: they are there), opens the robot, commands
+// both tracks in each cycle, and prints by wall clock: the time between two cycles as the program sees them, and from
+// SYNC to the last node's answer. No limit: the figures depend on the machine.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kenaf/hrt.h"
@@ -44,19 +47,33 @@ int main(int argc, char** argv) {
   std::string interface = "vcan0";
   int cycles = 1000;
   double period_s = 0.01;
+  std::string robot = "kenaf";
+  bool no_drives = false;
   app.add_option("--interface", interface)->capture_default_str();
   app.add_option("--cycles", cycles)->capture_default_str()->check(CLI::Range(10, 1'000'000));
   app.add_option("--period", period_s)->capture_default_str()->check(CLI::Range(0.001, 1.0));
+  app.add_option("--robot", robot)->capture_default_str();
+  app.add_flag("--no-drives", no_drives);
   CLI11_PARSE(app, argc, argv);
 
   // The drives on the bus, and the robot that runs on them.
   const kenaf::support::TemporaryFolder folder;
-  const kenaf::support::Process drives({KENAF_BIN_DIR "/kenaf-candrives", "--interface", interface, "--ideal"},
-                                       folder.path() / "drives.log");
+  std::optional<kenaf::support::Process> drives;
+  if (!no_drives)
+    drives.emplace(std::vector<std::string>{KENAF_BIN_DIR "/kenaf-candrives", "--interface", interface, "--robot",
+                                            robot, "--ideal"},
+                   folder.path() / "drives.log");
   hrt_config config = hrt_config_default();
   config.period_s = period_s;
   interface.copy(config.can_interface, sizeof config.can_interface - 1);
+  robot.copy(config.robot, sizeof config.robot - 1);
+  config.robot[std::min(robot.size(), sizeof config.robot - 1)] = '\0';
   if (const int code = hrt_kenaf_init_with(&config); code != HRT_OK) return fail("init", code);
+
+  std::array<char, 2000> setup{};
+  if (const int code = hrt_get_setup(setup.data(), setup.size()); code != HRT_OK) return fail("get_setup", code);
+  const std::string_view lines = setup.data();
+  fmt::print("{}\n", lines.substr(lines.rfind('\n') + 1));  // the last one is of real time
 
   // Cycles with a command each. The deviation from the period is of two returns of hrt_wait_cycle(); counters of late
   // and lost cycles are taken from the first one on.

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <future>
 #include <numbers>
+#include <utility>
 
 #include "hrt/motion_forward.hpp"
 #include "hrt/motion_turn.hpp"
@@ -55,13 +58,34 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
     if (recorder_) recorder_->add(*first, in_force_, estimate_.t_s);
-    thread_ = start_quiet_thread([this, state = *first] { run(state); });
+    begin_thread(*first);
   } catch (...) {
     try {
       transport_->close();
     } catch (const std::exception&) {
       // the first error is the relevant one
     }
+    throw;
+  }
+}
+
+void Robot::begin_thread(const robot::State& first) {
+  std::promise<void> begun;
+  std::future<void> outcome = begun.get_future();
+  thread_ = start_quiet_thread([this, first, begun = std::move(begun)]() mutable {
+    try {
+      transport_->begin_cycles();
+      begun.set_value();
+    } catch (...) {
+      begun.set_exception(std::current_exception());
+      return;
+    }
+    run(first);
+  });
+  try {
+    outcome.get();
+  } catch (...) {
+    thread_.join();
     throw;
   }
 }

@@ -27,6 +27,9 @@ class Transport {
   // Throws Error whose text says what to start or to connect.
   virtual Connection open(const hrt_config& config) = 0;
 
+  // Called once after open(), by the thread that from then on calls wait_state and send for all cycles. Throws Error.
+  virtual void begin_cycles() {}
+
   // Waits for the next cycle's state, whose frame is greater than all before; nullopt after interrupt(). Throws
   // Error(HRT_E_LINK) once the link is known to be lost, Error(HRT_E_DEVICE) if a device failed.
   virtual std::optional<robot::State> wait_state() = 0;

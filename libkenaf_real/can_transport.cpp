@@ -14,6 +14,7 @@
 #include "libkenaf_real/drive_watches.hpp"
 #include "libkenaf_real/measured_state.hpp"
 #include "libkenaf_real/power.hpp"
+#include "libkenaf_real/real_time.hpp"
 #include "libkenaf_real/translated_errors.hpp"
 #include "robot/state.hpp"
 
@@ -63,7 +64,7 @@ struct CanTransport::Session {
   std::unique_ptr<canopen::Bus> bus;
   Master master;
   BusCycle cycle;
-  std::string setup, set_up_warning;  // of the drives' watches; of what the start has found, "": nothing
+  std::string setup, set_up_warning;  // for people; "": nothing
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   // beats and late orders during the opening: reported with the first state after it
@@ -86,13 +87,14 @@ hrt::Connection CanTransport::open(const hrt_config& config) {
 hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
+  check_real_time(s.robot);
   s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
   s.master.watch_pauses(to_time(s.robot.master_silence_s));
   s.cycle.start();
   power_up(s.cycle);
   begin_event_timers(s.cycle, facts.watches, s.period_s);
-  s.setup = describe_watches(s.robot, facts.watches, s.period_s);
+  s.setup = describe_watches(s.robot, facts.watches, s.period_s) + "\n" + describe_real_time(s.robot);
   s.set_up_warning =
       joined(warning_of_gauge(s.robot, config.track_gauge_mm), warning_of_watches(s.robot, facts.watches));
   s.measured.emplace(s.robot, facts, s.period_s);
@@ -103,6 +105,10 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
     send({});
   }
   return {.period_s = s.period_s, .lockstep = false};
+}
+
+void CanTransport::begin_cycles() {
+  begin_real_time(session_->robot);
 }
 
 std::optional<robot::State> CanTransport::wait_state() {

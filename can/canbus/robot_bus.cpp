@@ -257,6 +257,8 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   // Heartbeats, measured quantities and answer time-out of the nodes.
   bus.node_heartbeat_s = table.number("node_heartbeat_s", {.min = 0.01, .max = 10});
   bus.has_currents = !table.has("currents") || table.boolean("currents");
+  if (table.has("realtime_priority")) bus.realtime_priority = table.integer("realtime_priority", 1, 99);
+  bus.lock_memory = table.has("lock_memory") && table.boolean("lock_memory");
   if (table.has("event_timer")) bus.event_timer = table.boolean("event_timer");
   bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});

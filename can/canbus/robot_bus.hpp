@@ -84,8 +84,11 @@ struct RobotBus {
   // is refused; false: none is used; nullopt: used where there is one.
   std::optional<bool> event_timer;
   bool has_battery = true;  // the first drive measures the voltage of its supply
-  double track_gauge_m;     // between the tracks' centre lines; 0: not in the description
-  double speed_loop_s;      // time constant of the track drives' own speed control: for simulated ones only
+  // Real time for the master's cycles: SCHED_FIFO at this priority, 1 to 99, and memory that is not swapped out.
+  std::optional<int> realtime_priority;
+  bool lock_memory = false;
+  double track_gauge_m;  // between the tracks' centre lines; 0: not in the description
+  double speed_loop_s;   // time constant of the track drives' own speed control: for simulated ones only
   // Those of the left side, at least one, front first; those of the right side, likewise; the flippers that the robot
   // has, in the order of robot::Flipper. All of a side are commanded the same speed.
   std::vector<DriveOnBus> drives;

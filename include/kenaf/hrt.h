@@ -386,8 +386,9 @@ int hrt_get_warning(char* text, size_t size);
 
 /* Describes how hrt_kenaf_init has set the robot up, for people, a line each without an end of the last one.
  * libkenaf_real says of each drive which of the two watches it has that stop it when the program ends: "track left
- * (node 1) watches its master's heartbeat (0x1016, 0.1 s) and its commands (0x1400:05, 0.1 s)". libkenaf_sim: "".
- * Writes, fails and ends as hrt_get_warning does; 1000 bytes hold it for six drives. */
+ * (node 1) watches its master's heartbeat (0x1016, 0.1 s) and its commands (0x1400:05, 0.1 s)"; and whether its cycles
+ * run in real time: "cycles by SCHED_FIFO at priority 50, memory locked". libkenaf_sim: "". Writes, fails and ends as
+ * hrt_get_warning does; 1000 bytes hold it for six drives. */
 int hrt_get_setup(char* text, size_t size);
 
 /* Prints the newest state to standard output in a few lines of text. HRT_E_NOT_INITIALISED; HRT_E_LINK: prints the last

@@ -210,6 +210,17 @@ TEST_CASE("Every error has a name, and only those") {
   CHECK(std::string(hrt_version()) == "0.1.0");
 }
 
+TEST_CASE("Cycles that cannot begin are an error of init, and the robot is closed") {
+  const auto robot = use_fake_robot();
+  robot->cycles_error = "the system refuses SCHED_FIFO";
+  CHECK(hrt_kenaf_init() == HRT_E_CONFIG);
+  CHECK(std::string(hrt_last_error()) == robot->cycles_error);
+  CHECK(robot->closed);
+  robot->cycles_error.clear();
+  CHECK(hrt_kenaf_init() == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
 TEST_CASE("What init has set up is told in as many bytes as there are") {
   const auto robot = use_fake_robot();
   robot->setup = "track left watches its commands\ntrack right watches its commands";

@@ -87,6 +87,10 @@ void FakeTransport::send(const robot::Command& command) {
   robot_->commands.push_back(command);
 }
 
+void FakeTransport::begin_cycles() {
+  if (!robot_->cycles_error.empty()) throw Error(HRT_E_CONFIG, robot_->cycles_error);
+}
+
 void FakeTransport::interrupt() {
   const std::lock_guard lock(robot_->mutex);
   robot_->interrupted = true;

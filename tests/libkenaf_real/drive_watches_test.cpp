@@ -85,7 +85,7 @@ TEST_CASE("Opening says of each drive which watches it has") {
   const std::string setup = both.transport.setup();
   CHECK_THAT(setup, Catch::StartsWith("track left (node 1) watches its master's heartbeat (0x1016, 0.1 s) and its "
                                       "commands (0x1400:05, 0.1 s)\ntrack right (node 2) watches"));
-  CHECK(std::ranges::count(setup, '\n') == 5);
+  CHECK(std::ranges::count(setup, '\n') == 6);
   CHECK(both.transport.warning().empty());
 
   SECTION("a drive without an event timer works, with a warning") {

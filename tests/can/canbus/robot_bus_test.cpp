@@ -118,6 +118,23 @@ TEST_CASE("One wrong value of the bus is named with its line") {
   }
 }
 
+TEST_CASE("What a description may say of its drives' event timers and of real time") {
+  const RobotBus bus = parse_robot_bus(kenaf_toml(), "k.toml");
+  CHECK_FALSE(bus.event_timer);
+  CHECK_FALSE(bus.realtime_priority);
+  CHECK_FALSE(bus.lock_memory);
+  const std::string key = "interface = \"can0\"";
+  const RobotBus all =
+      parse_robot_bus(with(key, key + "\nevent_timer = false\nrealtime_priority = 50\nlock_memory = true"), "k.toml");
+  CHECK(all.event_timer == false);
+  CHECK(all.realtime_priority == 50);
+  CHECK(all.lock_memory);
+  for (const char* wrong : {"event_timer = 1", "realtime_priority = 0", "realtime_priority = 100", "lock_memory = 1"}) {
+    const std::string text = with(key, key + "\n" + wrong);
+    CHECK_THAT(error_of(text), Catch::StartsWith(at_line(text, wrong)));
+  }
+}
+
 TEST_CASE("A node that is there twice is named with both its places") {
   CHECK_THAT(error_of(with("node = 8", "node = 3")), Catch::Contains("has node 3 twice: flipper front left and gyro"));
   CHECK_THAT(error_of(with("node = 6", "node = 127")),

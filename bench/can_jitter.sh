@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# SYNC and the commands after it, without and with real time, on a computer whose cores have nothing else to do and on one
+# whose cores all have. On a CAN interface vcan0, as root:
+#
+#   scripts/with-vcan.sh --timeout 3000 bench/can_jitter.sh build/release/bin [CYCLES]
+#
+# The drives and candump are not what is measured, so they run before everything else, by SCHED_FIFO. The load are four
+# processes of `stress` for each core; the program under test is can_loop.
+set -euo pipefail
+bin=$(realpath "$1") cycles=${2:-2000}
+share=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../share/robots
+work=$(mktemp -d)
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$work"' EXIT
+for tool in chrt stress candump; do
+  command -v "$tool" >/dev/null || { echo "can_jitter: $tool is not installed" >&2; exit 2; }
+done
+
+cp "$share/kenaf.toml" "$work/usual.toml"
+sed 's/^\[can\]$/&\nrealtime_priority = 50\nlock_memory = true/' "$share/kenaf.toml" >"$work/real-time.toml"
+
+measure() {  # ROBOT LOAD
+  echo "== $1, $2"
+  local load=''
+  if [ "$2" = loaded ]; then stress --cpu $((4 * $(nproc))) >/dev/null & load=$!; fi
+  chrt -f 95 candump -L vcan0 >"$work/bus.log" & local listener=$!
+  chrt -f 90 "$bin/kenaf-candrives" --interface vcan0 --ideal >"$work/drives.log" 2>&1 & local drives=$!
+  for _ in $(seq 100); do grep -q 'nodes on vcan0' "$work/drives.log" && break; sleep 0.1; done
+  "$bin/can_loop" --no-drives --robot "$work/$1.toml" --cycles "$cycles" || echo "can_jitter: the robot was lost"
+  kill "$drives" "$listener" $load
+  wait "$drives" "$listener" $load 2>/dev/null || true
+  "$bin/kenaf-canlog" --figures --robot "$work/$1.toml" "$work/bus.log" | grep -E '^(SYNC|commands|late)' || true
+}
+
+for load in idle loaded; do
+  for robot in usual real-time; do measure "$robot" "$load"; done
+done

@@ -1,0 +1,33 @@
+// Real time for the thread of the cycles, where the robot's description asks for it: SCHED_FIFO (sched(7)), before
+// which no usual thread runs, and memory that is never swapped out (mlockall(2)).
+//
+// What the system does not allow is an error of the opening, not a warning: who asks for real time has a robot that
+// needs it, and a cycle that is late only where the computer is busy shows when it is too late.
+//
+// Thread safety: any thread.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <string>
+
+#include "can/canbus/robot_bus.hpp"
+
+namespace kenaf::real {
+
+// Before anything is sent to the robot: locks the memory of the process, from now on and until it ends, and tries the
+// priority in a thread of its own, so that a refusal costs nothing. Throws hrt::Error(HRT_E_CONFIG) with what to set.
+void check_real_time(const canbus::RobotBus& bus);
+
+// In the thread of the cycles. Throws as check_real_time().
+void begin_real_time(const canbus::RobotBus& bus);
+
+// "cycles by SCHED_FIFO at priority 50, memory locked".
+std::string describe_real_time(const canbus::RobotBus& bus);
+
+// What is wrong and what to do where the system has answered with `error` (errno). `limit`: RLIMIT_RTPRIO;
+// RLIMIT_MEMLOCK in bytes.
+std::string refusal_of_priority(int priority, int error, rlim_t limit);
+std::string refusal_of_locking(int error, rlim_t limit);
+
+}  // namespace kenaf::real
