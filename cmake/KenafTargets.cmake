@@ -21,6 +21,17 @@ add_compile_options(-ffp-contract=off)
 # In the other builds a debugger finds the files by their whole paths.
 add_compile_options("$<$<CONFIG:Release>:-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=>")
 
+# What is installed reads files and datagrams of strangers: Debian's hardening (dpkg-buildflags(1), hardening=+all).
+set(optimised "$<CONFIG:Release,RelWithDebInfo,MinSizeRel>")
+add_compile_options("$<${optimised}:-fstack-protector-strong;-fstack-clash-protection;-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>"
+  -Wformat -Werror=format-security)
+add_link_options("$<${optimised}:LINKER:-z,relro,-z,now>")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|amd64|i[3-6]86")
+  add_compile_options("$<${optimised}:-fcf-protection>")
+endif()
+include(CheckPIESupported)
+check_pie_supported()  # links programs with -pie, as they are compiled
+
 if(KENAF_SANITIZE)
   add_compile_options(-fsanitize=${KENAF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${KENAF_SANITIZE})
@@ -122,39 +133,6 @@ function(kenaf_program name)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT ${PROGRAM_COMPONENT})
 endfunction()
 
-# kenaf_manual(NAME "what it is" [COMPONENT c]): the program's manual page, made of what the program and its commands say
-# of themselves, so that the two never differ. Programs that are built for another machine cannot be asked, and those of
-# a sanitizer are not installed.
-if(NOT CMAKE_CROSSCOMPILING AND NOT KENAF_SANITIZE)
-  find_program(KENAF_HELP2MAN help2man DOC "Makes the manual pages")
-endif()
-if(NOT KENAF_HELP2MAN)
-  message(STATUS "The programs get no manual pages: no help2man, or the programs are not for this machine's users")
-endif()
-function(kenaf_manual name description)
-  if(NOT KENAF_HELP2MAN)
-    return()
-  endif()
-  cmake_parse_arguments(MANUAL "" "COMPONENT" "" ${ARGN})
-  if(NOT MANUAL_COMPONENT)
-    set(MANUAL_COMPONENT programs)
-  endif()
-  # help2man asks one program, and takes the page's name from its file
-  set(asked "${CMAKE_CURRENT_BINARY_DIR}/manual/${name}")
-  set(whole_help "${PROJECT_SOURCE_DIR}/cmake/whole-help.sh")
-  file(GENERATE OUTPUT "${asked}" CONTENT "#!/bin/sh\nexec '${whole_help}' '$<TARGET_FILE:${name}>'\n"
-    FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
-  # where `man` looks for the pages of the programs in bin/
-  set(page "${PROJECT_BINARY_DIR}/share/man/man1/${name}.1")
-  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/share/man/man1")
-  add_custom_command(OUTPUT "${page}"
-    COMMAND "${KENAF_HELP2MAN}" --no-info "--version-string=${PROJECT_VERSION}" "--name=${description}"
-      --locale=C.UTF-8 "--output=${page}" "${asked}"
-    DEPENDS ${name} "${asked}" "${whole_help}" COMMENT "Manual page of ${name}" VERBATIM)
-  add_custom_target(${name}.1 ALL DEPENDS "${page}")
-  install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT ${MANUAL_COMPONENT})
-endfunction()
-
 # kenaf_test_headers(): the program from which all tests have their precompiled headers. Comes before the first kenaf_test.
 function(kenaf_test_headers)
   if(NOT KENAF_PRECOMPILE_HEADERS)
@@ -179,7 +157,8 @@ function(kenaf_test_settings name)
   target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain Threads::Threads kenaf_warnings)
   target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # what is tested is optimised; optimising the tests themselves too takes twice as long to compile
-  target_compile_options(${name} PRIVATE -O0)
+  # (and fortified functions need an optimiser)
+  target_compile_options(${name} PRIVATE -O0 -U_FORTIFY_SOURCE)
   if(KENAF_FUZZ_COVERAGE)
     target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
   endif()

@@ -109,6 +109,8 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   }
   embedded.view = live::parse_view_options(view);
   embedded.view.token = view_token;
+  embedded.view.asked_for = app.count("--view") + app.count("--view-token") > 0;
+  embedded.cameras.port_asked_for = app.count("--camera-port") > 0;
   if (is_embedded) options.embedded = embedded;
   return options;
 }

@@ -14,6 +14,7 @@ struct CameraOptions {
   bool image_server = true;
   std::uint16_t image_port = 5003;  // 0: any free one
   ImageType image_type = ImageType::good;
+  bool port_asked_for = false;  // by an option: then a program that cannot listen on it does not start
   bool operator==(const CameraOptions&) const = default;
 };
 

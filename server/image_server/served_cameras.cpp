@@ -1,5 +1,6 @@
 #include "server/image_server/served_cameras.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <stdexcept>
@@ -16,6 +17,7 @@ ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions
         std::make_unique<ImageServer>(*cameras.feed, address, options.image_port, options.image_type);
     spdlog::info("camera pictures on {}:{}", address, cameras.image_server->port());
   } catch (const std::runtime_error& error) {
+    if (options.port_asked_for) throw std::runtime_error(fmt::format("no image server: {}", error.what()));
     spdlog::warn("no image server: {}", error.what());
   }
   return cameras;

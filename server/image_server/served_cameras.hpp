@@ -14,8 +14,8 @@ struct ServedCameras {
   std::unique_ptr<ImageServer> image_server;  // null: it is off, or could not listen; destroyed before the feed
 };
 
-// Logs the address of the image server, or why it is not available; the program continues without it. `world` must
-// outlive the result.
+// Logs the address of the image server, or why it is not available; the program continues without it, unless its port
+// was asked for: then throws std::runtime_error with a text for the user. `world` must outlive the result.
 ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions& options, const std::string& address);
 
 }  // namespace kenaf::image_server

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 
 #include "formats/description/data_files.hpp"
 
@@ -33,16 +34,21 @@ void add(Assets& assets, const std::string& path, const fs::path& file) {
   if (const std::string_view type = type_of(file); !type.empty()) assets[path] = {type, read_file(file)};
 }
 
-// three.js, installed beside the page, or where the build found it.
-fs::path three_file(const fs::path& page, const char* installed, const char* built_with) {
-  fs::path file = page / "three" / installed;
-  return fs::exists(file) ? file : fs::path(built_with);
-}
-
 fs::path find_page() {
   for (const fs::path& root : description::data_roots())
     if (fs::is_regular_file(root / "page" / "index.html")) return root / "page";
   throw std::runtime_error("the page is not installed: there is no page/index.html below share/kenaf");
+}
+
+// three.js, from the folder beside the page's: `path` is that of the page's imports.
+void add_three_file(Assets& assets, const fs::path& page, const std::string& path) {
+  const fs::path file = page.parent_path() / path.substr(1);
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) {
+    throw std::runtime_error("the page lacks three.js: there is no file " + file.string() +
+                             "; install Kenaf again, or Debian's package libjs-three");
+  }
+  add(assets, path, file);
 }
 
 }  // namespace
@@ -56,9 +62,8 @@ Assets load_assets(std::string_view first_page) {
   }
   add(assets, "/", page / first_page);
   // At the paths by which the second imports the first.
-  add(assets, "/three/build/three.module.js", three_file(page, "three.module.js", KENAF_THREE_MODULE));
-  add(assets, "/three/examples/jsm/controls/OrbitControls.js",
-      three_file(page, "OrbitControls.js", KENAF_THREE_CONTROLS));
+  add_three_file(assets, page, "/three/build/three.module.js");
+  add_three_file(assets, page, "/three/examples/jsm/controls/OrbitControls.js");
   return assets;
 }
 

@@ -14,8 +14,8 @@ struct Asset {
 };
 using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/build/three.module.js"
 
-// Reads share/kenaf/page, with three.js from there or from the system with which this was built. Throws
-// std::runtime_error if there is no page. Of the pages only `first_page`, such as "index.html", is served, as "/".
+// Reads share/kenaf/page, and three.js from share/kenaf/three. Throws std::runtime_error with a text for the user if
+// one of the two is not there. Of the pages only `first_page`, such as "index.html", is served, as "/".
 Assets load_assets(std::string_view first_page);
 
 }  // namespace kenaf::live

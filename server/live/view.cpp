@@ -174,6 +174,7 @@ std::unique_ptr<View> open_view(world_server::WorldServer& world, const ViewOpti
     if (made_token && !spdlog::should_log(spdlog::level::info)) fmt::print(stderr, "live view: {}\n", url);
     return view;
   } catch (const std::runtime_error& error) {
+    if (options.asked_for) throw std::runtime_error(fmt::format("no live view: {}", error.what()));
     spdlog::warn("no live view: {}", error.what());
     return nullptr;
   }

@@ -43,8 +43,9 @@ class View {
   std::unique_ptr<Implementation> impl_;
 };
 
-// As started by programs: logs its address, or why it is not available; the program continues without it. With a
-// generated token it prints the address on standard error if the log does not show it.
+// As started by programs: logs its address, or why it is not available; the program continues without it, unless it was
+// asked for: then throws std::runtime_error with a text for the user. With a generated token it prints the address on
+// standard error if the log does not show it.
 std::unique_ptr<View> open_view(world_server::WorldServer& world, const ViewOptions& options,
                                 image_server::Feed* cameras);
 

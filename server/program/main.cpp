@@ -60,10 +60,12 @@ int main(int argc, char** argv) {
   try {
     kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
     view_options.token = kenaf::live::parse_view_token(token);
+    view_options.asked_for = app.count("--view") + app.count("--view-token") > 0;
     kenaf::image_server::CameraOptions camera_options;
     kenaf::image_server::set_cameras(camera_options, cameras);
     kenaf::image_server::set_camera_port(camera_options, camera_port);
     kenaf::image_server::set_camera_image(camera_options, camera_image);
+    camera_options.port_asked_for = app.count("--camera-port") > 0;
     kenaf::world_server::WorldServer server(options);
 
     // Not before the world is loaded: until then a signal ends the program at once, whatever it waits for. From here on

@@ -183,7 +183,7 @@ TEST_CASE("A view with a page that waits for an answer ends before its world, wh
   view.reset();
 }
 
-TEST_CASE("A port that is taken is named, and a program goes on without the view") {
+TEST_CASE("A port that is taken is named, and a program goes on without the view, unless that was asked for") {
   ServedWorld world;
   world_server::ServerOptions options;
   options.port = 0;
@@ -191,6 +191,10 @@ TEST_CASE("A port that is taken is named, and a program goes on without the view
   const ViewOptions taken{true, "127.0.0.1", world.port(), ""};
   CHECK_THROWS_WITH(View(server, taken), Catch::Contains(std::to_string(world.port())) && Catch::Contains("--view"));
   CHECK(open_view(server, taken, nullptr) == nullptr);
+  ViewOptions asked_for = taken;
+  asked_for.asked_for = true;
+  CHECK_THROWS_WITH(open_view(server, asked_for, nullptr),
+                    Catch::Contains("no live view") && Catch::Contains(std::to_string(world.port())));
   CHECK(open_view(server, ViewOptions{false, "127.0.0.1", 0, ""}, nullptr) == nullptr);
 }
 
