@@ -33,18 +33,27 @@ foreach(component ${CPACK_COMPONENTS_ALL})
   set(root "${CPACK_TEMPORARY_DIRECTORY}/${component}/usr")
   set(documents "${root}/share/doc/${package}")
 
-  file(GLOB_RECURSE pages "${root}/share/man/man*")
+  file(GLOB_RECURSE pages "${root}/share/man/*")
   compress(${pages})
   write_changelog(${package} "${documents}")
-  if(EXISTS "${CPACK_KENAF_SOURCE}/cmake/debian/${package}.lintian-overrides")
-    file(COPY_FILE "${CPACK_KENAF_SOURCE}/cmake/debian/${package}.lintian-overrides" "${root}/overrides")
-    file(MAKE_DIRECTORY "${root}/share/lintian/overrides")
-    file(RENAME "${root}/overrides" "${root}/share/lintian/overrides/${package}")
-  endif()
+  # What lintian(1) warns of and is meant so, with the reason: of every package, and of this one.
+  foreach(overrides every-package ${package})
+    set(overrides "${CPACK_KENAF_SOURCE}/cmake/debian/${overrides}.lintian-overrides")
+    if(EXISTS "${overrides}")
+      file(READ "${overrides}" text)
+      file(APPEND "${root}/share/lintian/overrides/${package}" "${text}")
+    endif()
+  endforeach()
 
   # zsh looks for the functions of packages elsewhere than for those of the machine (README.Debian of zsh-common).
   if(EXISTS "${root}/share/zsh/site-functions")
     file(RENAME "${root}/share/zsh/site-functions" "${root}/share/zsh/vendor-completions")
+  endif()
+  # Modules of Python are in one folder for all minor versions, whose names say which one a module is for; below /usr/local
+  # the interpreter looks in the folder of its own version alone (Debian Python Policy 2.5).
+  file(GLOB python_folder "${root}/lib/python3.*")
+  if(python_folder)
+    file(RENAME "${python_folder}" "${root}/lib/python3")
   endif()
   # The page's three.js is Debian's own, by a link to what Depends brings.
   if(EXISTS "${root}/share/kenaf/three")

@@ -14,7 +14,9 @@ import textwrap
 from dataclasses import dataclass, field
 
 # Which folder of share/kenaf has the names of an option's shipped files, and how they end.
-SHIPPED = {"--robot": ("robots", "toml"), "--world": ("worlds", "sdf"), "--manoeuvre": ("manoeuvres", "toml")}
+SHIPPED = {"--robot": ("robots", "toml"), "--world": ("worlds", "sdf")}
+# Which command of the program lists the names, in its first column: a file may hold several.
+LISTED = {"--manoeuvre": "manoeuvres"}
 # What follows an option's names: a type such as "FLOAT:FLOAT in [0 - 1]=1" or "TEXT ...", what else it needs, its words.
 OPTION_REST = (r"(?: (?P<type>(?!Needs:|Excludes:)\S+(?: in \[[^\]]*\]\S*)?(?: x \d+)?)(?P<many> \.\.\.)?)?"
                r"(?: (?:Needs|Excludes):(?: -\S+)+)*\s*(?P<words>.*)")
@@ -25,7 +27,8 @@ NUMBERS = ("UINT", "INT", "FLOAT", "SECONDS")
 class Option:
     names: list[str]
     words: str  # what it is, one line
-    value: str = ""  # "": a flag; "file", "folder", "number", "text", "shipped FOLDER EXTENSION" or "of a b c"
+    value: str = ""  # "": a flag; "file", "folder", "number", "text", "shipped FOLDER EXTENSION",
+    #                "listed COMMAND" or "of a b c"
     repeats: bool = False
 
 
@@ -45,6 +48,8 @@ def value_of(names, type_name, words):
     for name in names:
         if name in SHIPPED and re.search("shipped|embedded", words):
             return "shipped " + " ".join(SHIPPED[name])
+        if name in LISTED and "shipped" in words:
+            return "listed " + LISTED[name]
     kind = re.match(r"[\w.]*", type_name)[0]
     if kind in NUMBERS:
         return "number"
@@ -141,6 +146,7 @@ def bash_value(value):
         "folder": files.replace("-f", "-d"),
         "of": f'COMPREPLY=($(compgen -W "{rest}" -- "$current"))',
         "shipped": f'COMPREPLY=($(compgen -W "$(__@function@_shipped {rest})" -f -- "$current"))',
+        "listed": f'COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" {rest} 2>/dev/null | sed -n "2,\$ s/ .*//p")" -f -- "$current"))',
     }[kind]
 
 
@@ -181,6 +187,7 @@ def zsh_value(value):
         "folder": ":folder:_files -/",
         "of": f":value:({rest})",
         "shipped": f":name:__@function@_shipped {rest}",
+        "listed": f":name:__@function@_listed {rest}",
     }.get(kind, "")
 
 
@@ -209,8 +216,17 @@ __@function@_shipped() {{
   names=(${{KENAF_DATA_DIR:-/nonexistent}}/$1/*.$2(N:t:r) ${{commands[{program}]:h}}/../share/kenaf/$1/*.$2(N:t:r))
   _alternative 'names:shipped name:compadd -a names' 'files:file:_files'
 }}
-
 """
+    if any(option.value.startswith("listed ") for command in commands for option in command.options):
+        text += f"""
+# The names that a command of the program lists, in its first column below a title; or a file.
+__@function@_listed() {{
+  local -a names
+  names=(${{${{${{(f)"$({program} $1 2>/dev/null)"}}[2,-1]}}%% *}})
+  _alternative 'names:shipped name:compadd -a names' 'files:file:_files'
+}}
+"""
+    text += "\n"
     named = [command for command in commands if command.name]
     text += "_@function@() {\n"
     if not named:

@@ -14,7 +14,7 @@ packages=(
   # the Python package
   pybind11-dev python3-dev python3-numpy
   # the package
-  dpkg-dev file help2man
+  dpkg-dev file help2man python3
 )
 mode=${1:-all}
 case $mode in
@@ -23,7 +23,9 @@ case $mode in
     packages+=(
       # tests
       abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev
-      liburdfdom-tools llvm mypy python3
+      liburdfdom-tools llvm mypy
+      # tests of the package
+      groff lintian zsh
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes

@@ -24,6 +24,7 @@ programs() { (cd "$installed/bin" && ls); }
 # what of the log matches. A loaded machine may take long; a server that ends is noticed at once.
 start() {
   local log=$1 pattern=$2; shift 2
+  : >"$log"
   "$@" >"$log" 2>&1 & server=$!
   until grep -qE "$pattern" "$log"; do
     kill -0 "$server" 2>/dev/null || { cat "$log" >&2; fail "$1 ended before it said '$pattern'"; }
