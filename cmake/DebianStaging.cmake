@@ -64,5 +64,7 @@ endforeach()
 
 # README.md's name for what Debian calls copyright.
 set(license "${CPACK_TEMPORARY_DIRECTORY}/programs/usr/share/doc/kenaf/LICENSE")
-file(REMOVE "${license}")
-file(CREATE_LINK copyright "${license}" SYMBOLIC)
+if(EXISTS "${license}")
+  file(REMOVE "${license}")
+  file(CREATE_LINK copyright "${license}" SYMBOLIC)
+endif()

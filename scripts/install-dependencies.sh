@@ -25,7 +25,7 @@ case $mode in
       abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev
       liburdfdom-tools llvm mypy
       # tests of the package
-      groff lintian zsh
+      groff-base lintian zsh
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes

@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034
 # What the tests of the installation share; sourced with BUILD_DIR SOURCE_DIR. install.sh, which ctest runs before, has
 # filled $installed with what `cmake --install` installs, and $debs with the packages.
 set -euo pipefail
