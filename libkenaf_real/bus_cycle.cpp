@@ -46,7 +46,12 @@ void check_period(const canbus::RobotBus& bus, double period_s) {
 }
 
 BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
-    : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus), sent_(bus.drives.size()) {
+    : master_(master),
+      bus_(bus),
+      period_(to_time(period_s)),
+      image_(bus),
+      sent_(bus.drives.size()),
+      cycles_since_(bus.drives.size()) {
   for (std::size_t i = 0; i < bus.drives.size(); ++i) pdos_.push_back(canbus::pdos_of(bus, i));
   master_.watch([this](const canopen::ReceivedFrame& frame) { image_.on_frame(frame); });
 }
@@ -92,11 +97,15 @@ std::optional<Beat> BusCycle::wait() {
 void BusCycle::send(const DriveOrders& orders) {
   master_.check_pause();
   for (std::size_t i = 0; i < orders.size(); ++i) {
+    // A drive that takes commands less often gets each n-th; only a stop does not wait.
+    const bool waits = ++cycles_since_[i] < bus_.drives[i].device.command_every;
+    if (waits && orders[i].controlword != canopen::kControlQuickStop) continue;
+    cycles_since_[i] = 0;
     const std::array<std::int64_t, 2> values{orders[i].controlword, orders[i].target};
     master_.send(pack(pdos_[i].command, bus_.drives[i].node, values));
+    sent_[i] = orders[i];
   }
   if (answered_sync_at_ && master_.now() > *answered_sync_at_ + period_) ++late_;
-  sent_ = orders;
 }
 
 // Measured by the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with their times
@@ -108,7 +117,7 @@ bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
 std::optional<std::size_t> BusCycle::lost_drive() const {
   for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     const DriveInput& drive = image_.drive(i);
-    if (drive.restarted || is_silent(drive.state_at, kSilentDrive_s) ||
+    if (drive.restarted || drive.jump != 0 || is_silent(drive.state_at, kSilentDrive_s) ||
         canopen::power_state_of(drive.statusword) != PowerState::operation_enabled)
       return i;
   }
@@ -119,6 +128,10 @@ std::string BusCycle::loss_of(std::size_t i) const {
   const DriveInput& drive = image_.drive(i);
   const std::string name = to_string(drive_node(bus_, i));
   if (drive.restarted) return fmt::format("{} has restarted: was its supply interrupted?", name);
+  if (drive.jump != 0) {
+    return fmt::format("the position of {} (object 0x6064) jumped by {} counts, farther than the drive can turn{}",
+                       name, drive.jump, canbus::advice(bus_.drives[i].device, "position_bits = 16 (or 24)"));
+  }
   if (!drive.state_at) return fmt::format("{} sends no process data", name);
   if (is_silent(drive.state_at, kSilentDrive_s))
     return fmt::format("{} has been silent for {:.2f} s", name, seconds(*image_.sync_at() - *drive.state_at));

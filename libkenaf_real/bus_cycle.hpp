@@ -53,13 +53,15 @@ class BusCycle {
   std::optional<Beat> wait();
   // In force from the next SYNC on; late if that has already come. Throws HeldUp.
   void send(const DriveOrders& orders);
-  const DriveOrders& sent() const { return sent_; }  // zeros at first
+  const DriveOrders& sent() const { return sent_; }  // the last that went to each drive; zeros at first
   std::uint32_t late_orders() const { return late_; }
   double round_trip_s() const { return round_trip_s_; }  // newest SYNC to its last answer
 
   // From now on a boot-up message counts as a restart.
   void watch_restarts() { image_.watch_restarts(); }
-  // Returns the first drive that is not under control: restarted, silent, or not enabled.
+  // From now on a position that changes faster than the drive can turn means that it is lost.
+  void watch_jumps() { image_.watch_jumps(); }
+  // Returns the first drive that is not under control: restarted, silent, not enabled, or with an impossible position.
   std::optional<std::size_t> lost_drive() const;
   // Describes what is wrong with the drive at this moment, naming it. Its emergency message, if it sends one, may come
   // some milliseconds after its statusword: emergency_of, "" if there is none.
@@ -76,6 +78,7 @@ class BusCycle {
   ProcessImage image_;
   std::vector<canbus::DrivePdos> pdos_;
   DriveOrders sent_;
+  std::vector<int> cycles_since_;  // the last command to each drive
   std::optional<canopen::Time> first_sync_at_, answered_sync_at_;
   std::uint32_t number_ = 0, late_ = 0;
   double round_trip_s_ = 0;

@@ -20,13 +20,11 @@ struct NodeFacts {
 };
 
 // Refuses a bus that already has a master; starts the master's heartbeat, which continues from here; resets the
-// communication of each node and waits for all, `patience_s` at most; writes all parameters of the description; starts
-// the nodes. Throws hrt::Error: HRT_E_REFUSED if another program has the robot; HRT_E_DEVICE naming a node that does
-// not answer, is not of the expected kind, or refuses a value, and why.
-NodeFacts commission(Master& master, const canbus::RobotBus& bus, double period_s, double patience_s);
-
-// The objects written to a drive before its PDOs, in this order.
-std::vector<canopen::SdoWrite> parameters_of(const canbus::RobotBus& bus, std::size_t drive, double period_s);
+// communication of each node and waits for all, `can_timeout_s` at most, and as long again as a device file gives a
+// drive to boot; writes all parameters of the description; starts the nodes. Throws hrt::Error: HRT_E_REFUSED if
+// another program has the robot; HRT_E_DEVICE naming a node that does not answer, is not of the expected kind, or
+// refuses a value, and why.
+NodeFacts commission(Master& master, const canbus::RobotBus& bus, double period_s, double can_timeout_s);
 
 NamedNode drive_node(const canbus::RobotBus& bus, std::size_t drive);
 

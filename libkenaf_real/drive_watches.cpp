@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "can/canbus/bus_layout.hpp"
-#include "can/canopen/device.hpp"
+#include "can/canbus/node_setup.hpp"
 #include "hrt/error.hpp"
 #include "libkenaf_real/commissioning.hpp"
 
@@ -14,73 +14,73 @@ namespace kenaf::real {
 namespace {
 
 using canbus::RobotBus;
-using canopen::MappedObject;
 using canopen::ObjectType;
 using canopen::Pdo;
 using canopen::SdoWrite;
 using hrt::Error;
-namespace object = canopen::object;
 
-constexpr double kCyclesOfGap = 3;
+constexpr double kCommandsOfGap = 3;
 
 MappedObject communication_object(const Pdo& command, std::uint8_t sub, ObjectType type) {
   return {{static_cast<std::uint16_t>(0x1400 + command.number - 1), sub}, type};
 }
-MappedObject event_timer_of(const Pdo& command) {
-  return communication_object(command, 5, ObjectType::unsigned16);
-}
-
-SdoWrite watch_write(const MappedObject& object, std::int64_t value, std::string purpose) {
-  return {object.object, object.type, value, std::move(purpose)};
+std::optional<std::int64_t> read_event_timer(Master& master, const NamedNode& node, const Pdo& command) {
+  const SdoWrite timer = canbus::read_of_event_timer(command).what;
+  return master.read_if_there(node, {timer.object, timer.type});
 }
 
 // Returns whether the timer then has the value. Some drives change it only while the PDO is invalid.
 bool write_event_timer(Master& master, const NamedNode& node, const Pdo& command, std::int64_t ms) {
-  const SdoWrite timer = watch_write(event_timer_of(command), ms, "longest time without a command");
   const auto is_written = [&] {
     try {
-      master.write(node, timer);
-      return master.read(node, event_timer_of(command), timer.purpose) == ms;
+      master.write(node, canbus::write_of_event_timer(command, ms).what);
+      return read_event_timer(master, node, command) == ms;
     } catch (const Error& error) {
       if (error.code() != HRT_E_DEVICE) throw;
       return false;
     }
   };
   if (is_written()) return true;
-  const MappedObject id = communication_object(command, 1, ObjectType::unsigned32);
+  const canopen::ObjectAddress id{static_cast<std::uint16_t>(0x1400 + command.number - 1), 1};
   const std::uint32_t valid = cob_id(command, node.node);
-  master.write(node, watch_write(id, valid | canopen::kPdoInvalid, "switching RPDO1 off"));
+  const auto switch_to = [&](std::uint32_t value, const char* purpose) {
+    master.write(node, {id, ObjectType::unsigned32, value, purpose});
+  };
+  switch_to(valid | canopen::kPdoInvalid, "switching the command's PDO off");
   const bool written = is_written();
-  master.write(node, watch_write(id, valid, "switching RPDO1 on"));
+  switch_to(valid, "switching the command's PDO on");
   return written;
 }
 
-std::string in_words(const DriveWatches& watches, double heartbeat_s, double gap_s) {
-  const std::string heartbeat = fmt::format("its master's heartbeat (0x1016, {:.3g} s)", heartbeat_s),
-                    timer = fmt::format("its commands (0x1400:05, {:.3g} s)", gap_s);
-  if (watches.heartbeat && watches.event_timer) return heartbeat + " and " + timer;
-  return (watches.heartbeat ? heartbeat : timer) + " alone";
+// "its master's heartbeat (0x1016, 0.1 s) and its commands (0x1400:05, 0.1 s)"
+std::string in_words(const DriveWatches& watches, const RobotBus& bus, std::size_t drive, double period_s) {
+  const bool guarded = bus.drives[drive].device.error_control == canbus::ErrorControl::node_guarding;
+  const std::string master = fmt::format("its master's {} ({}, {:.3g} s)", guarded ? "requests" : "heartbeat",
+                                         guarded ? "0x100D" : "0x1016", bus.master_silence_s),
+                    commands = fmt::format("its commands (0x{:X}:05, {:.3g} s)",
+                                           0x1400 + canbus::pdos_of(bus, drive).command.number - 1,
+                                           longest_command_gap_s(bus, drive, period_s));
+  if (watches.heartbeat && watches.event_timer) return master + " and " + commands;
+  return (watches.heartbeat ? master : commands) + " alone";
 }
 
 }  // namespace
 
-double longest_command_gap_s(const RobotBus& bus, double period_s) {
-  return std::max(bus.master_silence_s, kCyclesOfGap * period_s);
+double longest_command_gap_s(const RobotBus& bus, std::size_t drive, double period_s) {
+  return std::max(bus.master_silence_s, kCommandsOfGap * bus.drives[drive].device.command_every * period_s);
 }
 
 DriveWatches find_watches(Master& master, const RobotBus& bus, std::size_t drive) {
   const NamedNode node = drive_node(bus, drive);
-  const auto silence_ms = static_cast<std::uint16_t>(std::lround(1e3 * bus.master_silence_s));
   DriveWatches watches;
-  watches.heartbeat = master.write_if_there(
-      node, watch_write(object::consumer_heartbeat_1, canopen::consumer_heartbeat(bus.master, silence_ms),
-                        "master's heartbeat, whose loss stops the drive"));
+  const std::optional<canbus::SdoStep> watch = canbus::begin_of_watch(bus, bus.drives[drive].device);
+  watches.heartbeat = !watch || master.write_if_there(node, watch->what);
   if (bus.event_timer != false) {
-    const MappedObject timer = event_timer_of(canbus::pdos_of(bus, drive).command);
-    const std::optional<std::int64_t> ms = master.read_if_there(node, timer);
+    const Pdo command = canbus::pdos_of(bus, drive).command;
+    const std::optional<std::int64_t> ms = read_event_timer(master, node, command);
     watches.event_timer = ms.has_value();
     // a time that the maker or a user has stored would end the set-up
-    if (ms && *ms != 0) master.write(node, watch_write(timer, 0, "event timer, off during the set-up"));
+    if (ms && *ms != 0) master.write(node, canbus::write_of_event_timer(command, 0).what);
   }
   if (bus.event_timer == true && !watches.event_timer)
     throw Error(HRT_E_DEVICE,
@@ -96,9 +96,10 @@ DriveWatches find_watches(Master& master, const RobotBus& bus, std::size_t drive
 }
 
 void begin_event_timers(BusCycle& cycle, AllWatches& watches, double period_s) {
-  const auto gap_ms = static_cast<std::int64_t>(std::ceil(1e3 * longest_command_gap_s(cycle.bus(), period_s) - 1e-6));
   for (std::size_t i = 0; i < watches.size(); ++i) {
     if (!watches[i].event_timer) continue;
+    const double gap_s = longest_command_gap_s(cycle.bus(), i, period_s);
+    const auto gap_ms = static_cast<std::int64_t>(std::ceil(1e3 * gap_s - 1e-6));
     const NamedNode node = drive_node(cycle.bus(), i);
     watches[i].event_timer = write_event_timer(cycle.master(), node, canbus::pdos_of(cycle.bus(), i).command, gap_ms);
     if (!watches[i].event_timer && (!watches[i].heartbeat || cycle.bus().event_timer == true))
@@ -111,10 +112,10 @@ void begin_event_timers(BusCycle& cycle, AllWatches& watches, double period_s) {
 
 void end_watches(BusCycle& cycle, std::size_t drive) {
   const NamedNode node = drive_node(cycle.bus(), drive);
-  for (const MappedObject& watch :
-       {event_timer_of(canbus::pdos_of(cycle.bus(), drive).command), object::consumer_heartbeat_1}) {
+  for (const canbus::SdoStep& end : {canbus::write_of_event_timer(canbus::pdos_of(cycle.bus(), drive).command, 0),
+                                     canbus::end_of_watch(cycle.bus().drives[drive].device)}) {
     try {
-      cycle.master().write_if_there(node, watch_write(watch, 0, "end of the watch for the master"));
+      cycle.master().write_if_there(node, end.what);
     } catch (const Error&) {
       // at rest all the same
     }
@@ -125,7 +126,7 @@ std::string describe_watches(const RobotBus& bus, const AllWatches& watches, dou
   std::string text;
   for (std::size_t i = 0; i < watches.size(); ++i)
     text += fmt::format("{}{} watches {}", i == 0 ? "" : "\n", to_string(drive_node(bus, i)),
-                        in_words(watches[i], bus.master_silence_s, longest_command_gap_s(bus, period_s)));
+                        in_words(watches[i], bus, i, period_s));
   return text;
 }
 

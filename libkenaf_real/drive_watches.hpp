@@ -1,6 +1,7 @@
 // The two watches by which a drive stops by itself when its master is gone: its consumer of the master's heartbeat
-// (0x1016), and the event timer of its commands (0x1400:05). CiA 301, 7.2.8.2.2 and 7.5.2.35. Both are optional in CiA
-// 301; a drive with neither would go on when this program dies, and is refused.
+// (0x1016; node guarding, 0x100D, where its device file says so), and the event timer of its commands (0x1400:05). CiA
+// 301, 7.2.8.2.2 and 7.5.2.35. Both are optional in CiA 301; a drive with neither would go on when this program dies,
+// and is refused.
 //
 //   heartbeat     ends with the program; begins during the set-up
 //   event timer   ends with the commands, also of a program whose heartbeat goes on; begins when every cycle has
@@ -23,8 +24,9 @@ struct DriveWatches {
 };
 using AllWatches = std::vector<DriveWatches>;  // of RobotBus::drives
 
-// How long commands may stay away: master_silence_s, but three cycles at least, so that a lost frame stops nothing.
-double longest_command_gap_s(const canbus::RobotBus& bus, double period_s);
+// How long a drive's commands may stay away: master_silence_s, but three of them at least, so that a lost frame stops
+// nothing.
+double longest_command_gap_s(const canbus::RobotBus& bus, std::size_t drive, double period_s);
 
 // In the set-up of a drive that is not enabled: begins its watch of the heartbeat, and looks for its event timer.
 // Throws hrt::Error(HRT_E_DEVICE) if it has no watch, or not those that the description requires.

@@ -18,13 +18,14 @@ using canopen::Time;
 using hrt::Error;
 
 [[noreturn]] void fail(const NamedNode& node, std::string_view verb, canopen::ObjectAddress object,
-                       std::string_view purpose, const SdoOutcome& outcome) {
+                       std::string_view purpose, const SdoOutcome& outcome, std::int64_t value = 0) {
   const bool silent = !outcome.by_server && outcome.abort == SdoAbort::timed_out;
-  throw Error(HRT_E_DEVICE,
-              fmt::format("{}: {} object {} ({}): {}", to_string(node), verb, to_string(object), purpose,
-                          silent ? std::string("no answer; is it powered, is the bit rate right?")
-                                 : fmt::format("{}{} (SDO abort {:#010x})", outcome.by_server ? "" : "a wrong answer: ",
-                                               describe(*outcome.abort), static_cast<std::uint32_t>(*outcome.abort))));
+  throw SdoRefused(
+      fmt::format("{}: {} object {} ({}): {}", to_string(node), verb, to_string(object), purpose,
+                  silent ? std::string("no answer; is it powered, is the bit rate right?")
+                         : fmt::format("{}{} (SDO abort {:#010x})", outcome.by_server ? "" : "a wrong answer: ",
+                                       describe(*outcome.abort), static_cast<std::uint32_t>(*outcome.abort))),
+      object, value, *outcome.abort);
 }
 
 bool is_missing(const SdoOutcome& outcome) {
@@ -58,6 +59,10 @@ void Master::watch_pauses(Time silence) {
   suspended_before_ = bus_.suspended();
 }
 
+void Master::guard(canopen::NodeId node) {
+  if (std::ranges::find(guarded_, node) == guarded_.end()) guarded_.push_back(node);
+}
+
 void Master::check_pause() {
   if (!longest_pause_ || !next_heartbeat_) return;
   const Time suspended = bus_.suspended() - suspended_before_;
@@ -75,6 +80,7 @@ void Master::send_heartbeat() {
   const Time before = now();
   try {
     send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));
+    for (const canopen::NodeId node : guarded_) send(canopen::guard_request(node));
     next_heartbeat_ = before + heartbeat_;
   } catch (const canopen::BusFull&) {
     next_heartbeat_ = now() + heartbeat_;  // if the caller continues all the same, it can receive in between
@@ -147,7 +153,8 @@ void Master::write(const NamedNode& node, const SdoWrite& write) {
   canopen::SdoClient client(node.node, answer_patience_);
   const SdoOutcome outcome =
       run(client, client.begin_write(write.object, encode_number(write.type, write.value), now()));
-  if (outcome.abort) fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome);
+  if (outcome.abort)
+    fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome, write.value);
 }
 
 std::optional<std::int64_t> Master::read_if_there(const NamedNode& node, const MappedObject& object) {
@@ -163,7 +170,7 @@ bool Master::write_if_there(const NamedNode& node, const SdoWrite& write) {
   const SdoOutcome outcome =
       run(client, client.begin_write(write.object, encode_number(write.type, write.value), now()));
   if (outcome.abort && !is_missing(outcome))
-    fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome);
+    fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome, write.value);
   return !outcome.abort;
 }
 

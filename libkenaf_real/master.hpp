@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "can/canopen/bus.hpp"
 #include "can/canopen/pdo.hpp"
@@ -43,6 +44,16 @@ class HeldUp : public ControlLost {
   using ControlLost::ControlLost;
 };
 
+// A node refused an SDO transfer, or did not answer it.
+class SdoRefused : public hrt::Error {
+ public:
+  SdoRefused(const std::string& words, canopen::ObjectAddress at, std::int64_t to_write, canopen::SdoAbort why)
+      : hrt::Error(HRT_E_DEVICE, words), object(at), value(to_write), abort(why) {}
+  canopen::ObjectAddress object;
+  std::int64_t value;  // that was to be written; 0 for a read
+  canopen::SdoAbort abort;
+};
+
 class Master {
  public:
   Master(canopen::Bus& bus, canopen::NodeId own_node, canopen::Time heartbeat, canopen::Time answer_patience);
@@ -54,6 +65,8 @@ class Master {
   // From now on receive() sends a heartbeat whenever one is due.
   void start_heartbeat();
   void stop_heartbeat() { next_heartbeat_.reset(); }
+  // From now on the node is asked by node guarding, with each heartbeat: it watches for that instead of the heartbeat.
+  void guard(canopen::NodeId node);
   // From now on the drives obey: a pause of `silence` in the heartbeat ends that, or a suspend of the computer of any
   // length, which the clock of the pauses does not count. receive() and check_pause() then throw HeldUp, once, before
   // anything else is sent. Drives whose watch had restarted would otherwise follow the next command as if nothing had
@@ -68,7 +81,7 @@ class Master {
   bool wait_until(canopen::Time until, const std::function<bool()>& done);
   bool was_interrupted() const { return interrupted_; }
 
-  // Throw hrt::Error(HRT_E_DEVICE) naming node, object, purpose and reason: aborted by the node, or no answer.
+  // Throw SdoRefused naming node, object, purpose and reason: aborted by the node, or no answer.
   std::int64_t read(const NamedNode& node, const canopen::MappedObject& object, std::string_view purpose);
   void write(const NamedNode& node, const canopen::SdoWrite& write);
   // nullopt or false if the node has no such object.
@@ -86,6 +99,7 @@ class Master {
   std::optional<canopen::Time> next_heartbeat_, longest_pause_;
   canopen::Time suspended_before_{};  // before the pauses were watched
   FrameWatch watch_;
+  std::vector<canopen::NodeId> guarded_;
   bool interrupted_ = false;
 };
 

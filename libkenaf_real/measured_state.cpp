@@ -58,6 +58,13 @@ robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
     }
   }
   const ProcessImage& image = cycle.image();
+  doubts_.clear();
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
+    if (!image.drive(i).velocity_doubted) continue;
+    doubts_ += fmt::format("{}{}: its velocity (object 0x606C) runs against its position, whose change is taken{}",
+                           doubts_.empty() ? "" : "; ", to_string(drive_node(bus_, i)),
+                           canbus::advice(bus_.drives[i].device, "velocity = \"magnitude\" (or \"16 bits\")"));
+  }
   if (const std::optional<double> battery_v = image.battery_v()) {
     state.battery_v = *battery_v;
     state.fields |= robot::kHasBattery;

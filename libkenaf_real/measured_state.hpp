@@ -21,7 +21,8 @@ class MeasuredState {
   // Updates for one beat. No posture (kHasPosture) while inclinometer or gyro are silent or absent; warning() reports
   // it. After a short silence the heading catches up with the first rate measured after it.
   robot::State update(const BusCycle& cycle, const Beat& beat);
-  const std::string& warning() const { return warning_; }
+  // Also of drives whose velocity cannot be what it says.
+  std::string warning() const { return warning_ + (warning_.empty() || doubts_.empty() ? "" : "; ") + doubts_; }
 
  private:
   void add_to_side(std::size_t drive, const DriveInput& input, robot::State& state);
@@ -38,7 +39,7 @@ class MeasuredState {
   std::vector<Travel> travels_;  // of each drive; not used for flippers
   Heading heading_;
   double unseen_s_ = 0;  // time without inclinometer or gyro that the heading does not cover yet
-  std::string warning_;
+  std::string warning_, doubts_;
 };
 
 }  // namespace kenaf::real

@@ -6,18 +6,20 @@
 #include <functional>
 #include <vector>
 
+#include "can/canbus/node_setup.hpp"
 #include "hrt/error.hpp"
+#include "libkenaf_real/advice.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/drive_watches.hpp"
 
 namespace kenaf::real {
 namespace {
 
+using canbus::ModeChange;
 using canopen::DriveMode;
 using canopen::PowerState;
 using canopen::Time;
 using hrt::Error;
-namespace object = canopen::object;
 
 constexpr Time kPowerUp = std::chrono::seconds(3);  // relays and capacitors
 constexpr Time kModeChange = std::chrono::seconds(1);
@@ -41,15 +43,20 @@ PowerState state_of(const BusCycle& cycle, std::size_t i) {
   return canopen::power_state_of(cycle.image().drive(i).statusword);
 }
 
+const canbus::Device& device_of(const BusCycle& cycle, std::size_t i) {
+  return cycle.bus().drives[i].device;
+}
+
 std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
   return is_position(cycle.bus().drives[i].mode) ? cycle.image().drive(i).position : 0;
 }
 
 std::string not_enabled(const BusCycle& cycle, std::size_t i) {
   const DriveInput& drive = cycle.image().drive(i);
-  return fmt::format("{} could not be enabled: it is in the state \"{}\" (statusword {:#06x}){}{}",
+  return fmt::format("{} could not be enabled: it is in the state \"{}\" (statusword {:#06x}){}{}{}",
                      to_string(drive_node(cycle.bus(), i)), describe(state_of(cycle, i)), drive.statusword,
-                     drive.emergency ? ": " : "", drive.emergency ? describe(*drive.emergency) : "");
+                     drive.emergency ? ": " : "", drive.emergency ? describe(*drive.emergency) : "",
+                     advice_on_state(cycle.bus().drives[i].device, state_of(cycle, i), drive.emergency));
 }
 
 void wait_in_set_up(BusCycle& cycle) {
@@ -94,50 +101,81 @@ std::uint16_t control_out_of_quick_stop(int cycles_in_it) {
   return cycles_in_it % kEdgeEachCycles == 1 ? canopen::kControlQuickStop : canopen::kControlEnable;
 }
 
-void enable_all(BusCycle& cycle) {
-  std::vector<int> cycles_in_quick_stop(cycle.bus().drives.size());
+// A reset acts on the rising edge of bit 7. A drive may look at the controlword less often than it gets one.
+std::uint16_t control_out_of_fault(const canbus::Device& device, int cycles_in_it) {
+  const int cycles = device.fault_reset_cycles * device.command_every;
+  return (cycles_in_it - 1) / cycles % 2 == 0 ? canopen::kControlFaultReset : std::uint16_t{0};
+}
+
+// Takes all drives to "switched on", or to "operation enabled"; those that are enabled already stay so.
+void take_to(BusCycle& cycle, PowerState wanted) {
+  const std::size_t drives = cycle.bus().drives.size();
+  std::vector<int> cycles_in_quick_stop(drives), cycles_in_fault(drives);
   const auto controlword = [&](std::size_t i) {
     const PowerState state = state_of(cycle, i);
-    return state == PowerState::quick_stop_active
-               ? control_out_of_quick_stop(++cycles_in_quick_stop[i])
-               : canopen::control_towards_operation(state, cycle.sent()[i].controlword);
+    if (state == PowerState::quick_stop_active) return control_out_of_quick_stop(++cycles_in_quick_stop[i]);
+    if (state == PowerState::fault) return control_out_of_fault(device_of(cycle, i), ++cycles_in_fault[i]);
+    if (state == PowerState::switched_on && wanted == PowerState::switched_on) return canopen::kControlSwitchOn;
+    return canopen::control_towards_operation(state, cycle.sent()[i].controlword);
   };
   run_until(
       cycle, kPowerUp,
       [&](std::size_t i) {
         return DriveOrder{controlword(i), hold_target(cycle, i)};
       },
-      [&](std::size_t i) { return state_of(cycle, i) == PowerState::operation_enabled; },
+      [&](std::size_t i) {
+        const PowerState state = state_of(cycle, i);
+        return state == wanted || state == PowerState::operation_enabled;
+      },
       [&](std::size_t i) { return not_enabled(cycle, i); });
 }
 
-void write_mode(BusCycle& cycle, std::size_t i, DriveMode mode) {
+void enable_all(BusCycle& cycle) {
+  take_to(cycle, PowerState::operation_enabled);
+}
+
+void write_step(BusCycle& cycle, std::size_t i, const canbus::SdoStep& step) try {
+  cycle.master().write(drive_node(cycle.bus(), i), step.what);
+} catch (const SdoRefused& refused) {
+  throw Error(HRT_E_DEVICE, refused.what() + advice_on_refusal_when_enabled(device_of(cycle, i), refused));
+}
+
+// Waits until the drive shows the mode that was written.
+void await_mode(BusCycle& cycle, std::size_t i, DriveMode mode) {
   const NamedNode node = drive_node(cycle.bus(), i);
-  cycle.master().write(node,
-                       {object::mode.object, object::mode.type, static_cast<std::int64_t>(mode), "mode of operation"});
+  const canopen::SdoWrite shown = canbus::read_of_mode().what;
   const Time until = cycle.master().now() + kModeChange;
-  while (cycle.master().read(node, object::mode_display, "mode in force") != static_cast<std::int64_t>(mode)) {
+  while (cycle.master().read(node, {shown.object, shown.type}, shown.purpose) != static_cast<std::int64_t>(mode)) {
     if (cycle.master().now() > until)
-      throw Error(HRT_E_DEVICE, fmt::format("{} did not switch to the mode {}", to_string(node), describe(mode)));
+      throw Error(HRT_E_DEVICE, fmt::format("{} did not switch to the mode {}{}", to_string(node), describe(mode),
+                                            canbus::advice(device_of(cycle, i), "mode_change = \"disabled\"")));
   }
+}
+
+void write_mode(BusCycle& cycle, std::size_t i, DriveMode mode) {
+  write_step(cycle, i, canbus::write_of_mode(mode));
+  await_mode(cycle, i, mode);
+}
+
+// Commands have arrived, but the drives are not enabled: what can be set, or seen to be wrong, only now.
+void check_before_enabling(BusCycle& cycle, std::size_t i) {
+  const canbus::DriveOnBus& drive = cycle.bus().drives[i];
+  if (drive.device.halt_blocks_mode) write_step(cycle, i, canbus::write_of_mode(first_mode(drive)));
+  if (is_position(drive.mode)) return;
+  const NamedNode node = drive_node(cycle.bus(), i);
+  const canopen::SdoWrite target = canbus::read_of_target_velocity().what;
+  const std::int64_t left_over = cycle.master().read_if_there(node, {target.object, target.type}).value_or(0);
+  if (left_over != 0)
+    throw Error(HRT_E_DEVICE,
+                fmt::format("{}: its target velocity (object 0x60FF) is {} although 0 was commanded: it would run as "
+                            "soon as it is enabled{}",
+                            to_string(node), left_over, canbus::advice(drive.device, "zero_target_by_sdo = true")));
 }
 
 void begin_homing(BusCycle& cycle, std::size_t i) {
   const canbus::DriveOnBus& drive = cycle.bus().drives[i];
-  const canbus::Homing& homing = *drive.homing;
-  const NamedNode node = drive_node(cycle.bus(), i);
-  const auto write = [&](const canopen::MappedObject& what, std::int64_t value, const char* purpose) {
-    cycle.master().write(node, {what.object, what.type, value, purpose});
-  };
-  const std::int64_t speed = std::abs(std::int64_t{velocity_to_drive(drive.units, homing.speed_radps)});
-  write(object::homing_method, homing.method, "homing method");
-  write(object::home_offset, std::int64_t{homing.offset_direction} * position_to_drive(drive.units, homing.home_rad),
-        "position at home");
-  write(object::homing_speed_switch, speed, "homing speed");
-  write(object::homing_speed_zero, speed, "homing speed");
-  write(object::homing_acceleration, acceleration_to_drive(drive.units, homing.acceleration_radps2),
-        "homing acceleration");
-  write_mode(cycle, i, DriveMode::homing);
+  for (const canbus::SdoStep& step : canbus::homing_of_drive(drive)) write_step(cycle, i, step);
+  if (first_mode(drive) != DriveMode::homing) write_mode(cycle, i, DriveMode::homing);
 }
 
 // CiA 402 is ambiguous: at home the position is the home offset, or minus the offset. A flipper with the wrong sign of
@@ -157,9 +195,40 @@ void check_home(const BusCycle& cycle, std::size_t i) {
   if (!stays && std::abs(measured_rad - mirrored_rad) > margin_rad) return;
   throw Error(
       HRT_E_DEVICE,
-      fmt::format("{}: reports {:.3f} rad after homing, not {:.3f} rad (home_rad); if its home offset (object 0x607C) "
-                  "has the opposite sign, set offset_direction = {} in [can.flipper.homing]",
-                  to_string(drive_node(cycle.bus(), i)), measured_rad, home_rad, -drive.homing->offset_direction));
+      fmt::format(
+          "{}: reports {:.3f} rad after homing, not {:.3f} rad (home_rad); if its home offset (object 0x607C) "
+          "has the opposite sign, set offset_direction = {} in [can.flipper.homing]{}",
+          to_string(drive_node(cycle.bus(), i)), measured_rad, home_rad, -drive.homing->offset_direction,
+          canbus::advice(drive.device, fmt::format("home_offset_direction = {}", -drive.homing->offset_direction))));
+}
+
+// Flippers go on in their own mode. A drive that changes its mode only when it is not enabled pauses meanwhile: its
+// brake, or the gear, holds it.
+void leave_homing(BusCycle& cycle) {
+  const auto pauses = [&](std::size_t i) {
+    return cycle.bus().drives[i].homing && device_of(cycle, i).mode_change == ModeChange::disabled;
+  };
+  const auto none = [&](std::size_t i) { return not_enabled(cycle, i); };
+  bool any = false;
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) any = any || pauses(i);
+  if (any) {
+    run_until(
+        cycle, kModeChange,
+        [&](std::size_t i) {
+          return DriveOrder{pauses(i) ? canopen::kControlSwitchOn : canopen::kControlEnable, hold_target(cycle, i)};
+        },
+        [&](std::size_t i) { return !pauses(i) || state_of(cycle, i) == PowerState::switched_on; }, none);
+  }
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
+    const canbus::DriveOnBus& drive = cycle.bus().drives[i];
+    if (!drive.homing) continue;
+    pauses(i) ? write_step(cycle, i, canbus::write_of_mode(drive.mode)) : write_mode(cycle, i, drive.mode);
+  }
+  if (!any) return;
+  enable_all(cycle);
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
+    if (pauses(i)) await_mode(cycle, i, cycle.bus().drives[i].mode);
+  }
 }
 
 void home(BusCycle& cycle) {
@@ -209,9 +278,7 @@ void home(BusCycle& cycle) {
   for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
     if (homes(i)) check_home(cycle, i);
   }
-  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
-    if (homes(i)) write_mode(cycle, i, cycle.bus().drives[i].mode);
-  }
+  leave_homing(cycle);
 }
 
 bool is_at_rest(const BusCycle& cycle, std::size_t track) {
@@ -232,10 +299,16 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
 
 void power_up(BusCycle& cycle) try {
   hear_all(cycle);
+  take_to(cycle, PowerState::switched_on);
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) check_before_enabling(cycle, i);
   enable_all(cycle);
   cycle.watch_restarts();
-  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
+    const DriveMode mode = first_mode(cycle.bus().drives[i]);
+    device_of(cycle, i).mode_change == ModeChange::enabled ? write_mode(cycle, i, mode) : await_mode(cycle, i, mode);
+  }
   home(cycle);
+  cycle.watch_jumps();
 } catch (const Error&) {
   try_quick_stop(cycle);  // enabled drives, possibly moving home, must not wait until they miss the heartbeat
   throw;
@@ -257,11 +330,12 @@ void lose(BusCycle& cycle, std::size_t drive) {
   Master& master = cycle.master();
   master.wait_until(master.now() + kEmergencyFollows, [&] { return !cycle.emergency_of(drive).empty(); });
   const std::string emergency = cycle.emergency_of(drive);
+  const std::string advice = advice_on_emergency(device_of(cycle, drive), cycle.image().drive(drive).emergency);
   throw Error(
       HRT_E_DEVICE,
       fmt::format(
-          "{}{}{}; all drives were commanded to stop; to start them again, call hrt_close(), then hrt_kenaf_init()",
-          loss, emergency.empty() ? "" : ": ", emergency));
+          "{}{}{}{}; all drives were commanded to stop; to start them again, call hrt_close(), then hrt_kenaf_init()",
+          loss, emergency.empty() ? "" : ": ", emergency, advice));
 }
 
 std::string power_down(BusCycle& cycle) {

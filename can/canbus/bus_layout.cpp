@@ -1,5 +1,7 @@
 #include "can/canbus/bus_layout.hpp"
 
+#include <algorithm>
+
 #include "can/canopen/device.hpp"
 #include "can/canopen/drive.hpp"
 
@@ -13,6 +15,21 @@ using canopen::PdoDirection;
 namespace object = canopen::object;
 
 constexpr std::uint8_t kEachSync = 1, kEachFifthSync = 5;
+
+// CiA 402-2, default PDO mapping, of drives whose mapping is fixed: statusword and position, statusword and velocity;
+// controlword and the target of the mode.
+DrivePdos default_pdos(bool position_mode) {
+  using enum PdoDirection;
+  return {.state = {transmit, 3, kEachSync, {object::statusword, object::position_actual}},
+          .effort = {transmit, 4, kEachSync, {object::statusword, object::velocity_actual}},
+          .battery = {transmit, 2, 10, {}},
+          .command = {receive,
+                      static_cast<std::uint8_t>(position_mode ? 3 : 4),
+                      kEachSync,
+                      {object::controlword, position_mode ? object::target_position : object::target_velocity}},
+          .has_effort = !position_mode,
+          .has_battery = false};
+}
 
 Frame frame_of(const Pdo& pdo) {
   Frame frame;
@@ -34,7 +51,7 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
     const DrivePdos pdos = pdos_of(bus, i);
     add(pdos.state);
     if (pdos.has_effort) add(pdos.effort);
-    add(pdos.command);
+    all.push_back({frame_of(pdos.command), cycles_per_s / bus.drives[i].device.command_every});
     if (pdos.has_battery) add(pdos.battery);
   }
   std::size_t nodes = bus.drives.size();
@@ -48,8 +65,13 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
     ++nodes;
   }
   const Frame heartbeat{.length = 1};
+  const auto guarded = static_cast<double>(std::ranges::count_if(
+      bus.drives, [](const DriveOnBus& drive) { return drive.device.error_control == ErrorControl::node_guarding; }));
+  // a request and its answer in place of the node's own heartbeat
+  all.push_back({canopen::guard_request(1), guarded / bus.master_heartbeat_s});
+  all.push_back({heartbeat, guarded / bus.master_heartbeat_s});
   all.push_back({heartbeat, 1 / bus.master_heartbeat_s});
-  all.push_back({heartbeat, static_cast<double>(nodes) / bus.node_heartbeat_s});
+  all.push_back({heartbeat, (static_cast<double>(nodes) - guarded) / bus.node_heartbeat_s});
   return all;
 }
 
@@ -57,6 +79,8 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
 
 DrivePdos pdos_of(const RobotBus& bus, std::size_t drive) {
   using enum PdoDirection;
+  const Device& device = bus.drives[drive].device;
+  if (device.mapping == Mapping::cia402) return default_pdos(is_position(bus.drives[drive].mode));
   const bool flipper = bus.drives[drive].is_flipper();
   Pdo effort{transmit, 2, flipper ? kEachFifthSync : kEachSync, {}};
   if (!flipper) effort.objects.push_back(object::velocity_actual);
@@ -66,7 +90,7 @@ DrivePdos pdos_of(const RobotBus& bus, std::size_t drive) {
           .effort = std::move(effort),
           .battery = {transmit, 3, 10, {object::dc_link_voltage}},
           .command = {receive,
-                      1,
+                      static_cast<std::uint8_t>(device.command_pdo),
                       kEachSync,
                       {object::controlword,
                        is_position(bus.drives[drive].mode) ? object::target_position : object::target_velocity}},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -30,6 +31,7 @@ constexpr Range kAngle{.min = -kTurn_rad, .max = kTurn_rad};
 constexpr Range kStopWithin{.min = 0.05, .max = 2};
 constexpr std::size_t kMaxDrivesASide = 8;  // as many as there may be wheels
 constexpr int kBitRate = 500'000;
+constexpr double kWrapAtLeast_s = 0.05;  // a drive silent for longer is lost anyway
 
 DriveMode read_mode(TomlReader& table, std::array<DriveMode, 2> choice) {
   const std::string text = table.text("mode");
@@ -46,9 +48,25 @@ int read_direction(TomlReader& table, std::string_view key = "direction") {
   return direction;
 }
 
+// The device file that `device` names: a shipped one, or a path, which counts from the file that names it.
+std::optional<Device> read_device(TomlReader& table) {
+  if (!table.has("device")) return std::nullopt;
+  const std::string name = table.text("device");
+  const std::filesystem::path path(name), folder = std::filesystem::path(table.file()).parent_path();
+  const bool is_relative = name.find('/') != std::string::npos && path.is_relative();
+  try {
+    Device device = load_device(is_relative ? (folder / path).string() : name);
+    device.name = name;
+    return device;
+  } catch (const description::DescriptionError& error) {
+    table.fail("device", fmt::format("is \"{}\": {}", name, error.what()));
+  }
+}
+
 // Motor, encoder and gear of one kind of drive. `turns_per_unit`: motor turns for 1 m of track or 1 rad of flipper.
 DriveOnBus read_kind(TomlReader& table, double turns_per_unit) {
   DriveOnBus drive{};
+  if (std::optional<Device> common = read_device(table)) drive.device = std::move(*common);
   drive.units.counts_per_unit = table.number("counts_per_turn", {.min = 1, .max = 1e8}) * turns_per_unit;
   drive.units.velocity_per_unit = table.number("velocity_units_per_turn", kPositive) * turns_per_unit;
   drive.units.acceleration_per_unit = table.number("acceleration_units_per_turn", kPositive) * turns_per_unit;
@@ -62,6 +80,9 @@ double motor_turns(TomlReader& table) {
 // One drive of its kind: its place on the bus, and its direction of rotation.
 DriveOnBus read_drive(TomlReader& table, DriveOnBus drive) {
   drive.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
+  if (std::optional<Device> own = read_device(table)) drive.device = std::move(*own);
+  if (drive.homing && drive.homing->offset_direction == 0)
+    drive.homing->offset_direction = drive.device.home_offset_direction;
   const int direction = read_direction(table);
   drive.units.counts_per_unit *= direction;
   drive.units.velocity_per_unit *= direction;
@@ -70,8 +91,28 @@ DriveOnBus read_drive(TomlReader& table, DriveOnBus drive) {
   return drive;
 }
 
+// A flipper's counter must tell all of its range apart; a track's may wrap, but not within kWrapAtLeast_s.
+void check_counter(TomlReader& table, const DriveOnBus& drive) {
+  const int bits = drive.device.position_bits;
+  if (bits == 32) return;
+  const double counts = std::ldexp(1, bits);
+  const double counts_per_unit = std::abs(drive.units.counts_per_unit);
+  if (is_position(drive.mode) && (drive.max_position - drive.min_position) * counts_per_unit >= counts) {
+    table.fail("device",
+               fmt::format("has a position of {} bits (position_bits of {}), too few for the flipper's range "
+                           "of {:.0f} counts",
+                           bits, drive.device.name, (drive.max_position - drive.min_position) * counts_per_unit));
+  }
+  if (!is_position(drive.mode) && 2 * kWrapAtLeast_s * drive.max_speed * counts_per_unit >= counts) {
+    table.fail("device", fmt::format("has a position of {} bits (position_bits of {}), too few to tell which way the "
+                                     "track turns: it wraps within {} s",
+                                     bits, drive.device.name, 2 * kWrapAtLeast_s));
+  }
+}
+
 // Checks that the limits fit the drive's 32-bit numbers.
 void check_numbers(TomlReader& table, const DriveOnBus& drive) {
+  check_counter(table, drive);
   const double most = std::numeric_limits<std::int32_t>::max();
   const auto check = [&](std::string_view key, double value, const char* what) {
     if (std::abs(value) > most)
@@ -93,7 +134,7 @@ Homing read_homing(TomlReader table) {
   Homing homing{};
   homing.method = static_cast<std::int8_t>(table.integer("method", -128, 127));
   homing.home_rad = table.number("home_rad", kAngle);
-  homing.offset_direction = table.has("offset_direction") ? read_direction(table, "offset_direction") : 1;
+  homing.offset_direction = table.has("offset_direction") ? read_direction(table, "offset_direction") : 0;
   homing.speed_radps = table.number("speed_radps", {.min = 0, .max = 3, .open_min = true});
   homing.acceleration_radps2 = table.number("acceleration_radps2", kPositive);
   homing.patience_s = table.number("patience_s", {.min = 0, .max = 120, .open_min = true});
@@ -126,6 +167,7 @@ void read_sides(TomlReader table, std::string_view part, TomlReader motor, Robot
   bus.speed_loop_s = table.number("speed_loop_s", {.min = 0, .max = 1});
   check_numbers(table, kind);
   for (const robot::Track side : {robot::kLeft, robot::kRight}) read_side(table, part, side, kind, bus);
+  for (const DriveOnBus& drive : bus.drives) check_counter(table, drive);
   table.finish();
   if (longest_stop_s(bus) > bus.stop_within_s) {
     table.fail("quick_stop_mps2",
@@ -272,6 +314,10 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   else if (table.has("flipper"))
     table.fail("flipper", "has drives for flippers, but this description has no [flipper]");
 
+  // What one drive does not have, the robot does not have.
+  for (const DriveOnBus& drive : bus.drives) bus.has_currents = bus.has_currents && drive.device.currents;
+  bus.has_battery = bus.has_battery && bus.drives.front().device.battery;
+
   // Optional sensors; finally, node ids must be unique.
   if (table.has("inclinometer")) bus.inclinometer = read_inclinometer(table.table("inclinometer"));
   if (table.has("gyro")) bus.gyro = read_gyro(table.table("gyro"));
@@ -292,31 +338,37 @@ bool has_flippers(const RobotBus& bus) {
 std::size_t drives_of_side(const RobotBus& bus, robot::Track side) {
   return static_cast<std::size_t>(std::ranges::count_if(
       bus.drives, [side](const DriveOnBus& drive) { return !drive.is_flipper() && drive.side == side; }));
-}
+  canopen::DriveMode first_mode(const DriveOnBus& drive) {
+    return drive.homing && drive.device.mode_change == ModeChange::disabled ? DriveMode::homing : drive.mode;
+  }
 
-double longest_stop_s(const RobotBus& bus) {
-  const DriveOnBus& track = bus.drives.front();
-  return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
-}
+  int life_time_factor(const RobotBus& bus) {
+    return static_cast<int>(std::floor(bus.master_silence_s / bus.master_heartbeat_s + 1e-9));
+  }
 
-std::int32_t position_to_drive(const DriveUnits& units, double position) {
-  return static_cast<std::int32_t>(std::lround(units.zero_counts + position * units.counts_per_unit));
-}
+  double longest_stop_s(const RobotBus& bus) {
+    const DriveOnBus& track = bus.drives.front();
+    return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
+  }
 
-double position_from_drive(const DriveUnits& units, std::int32_t counts) {
-  return (counts - units.zero_counts) / units.counts_per_unit;
-}
+  std::int32_t position_to_drive(const DriveUnits& units, double position) {
+    return static_cast<std::int32_t>(std::lround(units.zero_counts + position * units.counts_per_unit));
+  }
 
-std::int32_t velocity_to_drive(const DriveUnits& units, double velocity) {
-  return static_cast<std::int32_t>(std::lround(velocity * units.velocity_per_unit));
-}
+  double position_from_drive(const DriveUnits& units, std::int32_t counts) {
+    return (counts - units.zero_counts) / units.counts_per_unit;
+  }
 
-double velocity_from_drive(const DriveUnits& units, std::int32_t velocity) {
-  return velocity / units.velocity_per_unit;
-}
+  std::int32_t velocity_to_drive(const DriveUnits& units, double velocity) {
+    return static_cast<std::int32_t>(std::lround(velocity * units.velocity_per_unit));
+  }
 
-std::uint32_t acceleration_to_drive(const DriveUnits& units, double acceleration) {
-  return static_cast<std::uint32_t>(std::lround(acceleration * units.acceleration_per_unit));
-}
+  double velocity_from_drive(const DriveUnits& units, std::int32_t velocity) {
+    return velocity / units.velocity_per_unit;
+  }
+
+  std::uint32_t acceleration_to_drive(const DriveUnits& units, double acceleration) {
+    return static_cast<std::uint32_t>(std::lround(acceleration * units.acceleration_per_unit));
+  }
 
 }  // namespace kenaf::canbus

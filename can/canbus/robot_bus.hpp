@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "can/canbus/device_file.hpp"
 #include "can/canopen/drive.hpp"
 #include "can/canopen/nmt.hpp"
 #include "robot/parts.hpp"
@@ -48,6 +49,7 @@ struct DriveOnBus {
   double acceleration, quick_stop_deceleration;  // m/s^2 or rad/s^2
   double min_position, max_position;             // rad; flippers only
   std::optional<Homing> homing;                  // flippers; nullopt: the encoder is absolute
+  Device device{};                               // what its type needs beyond the standards
 
   bool is_flipper() const { return flipper.has_value(); }
 };
@@ -102,10 +104,16 @@ std::size_t drives_of_side(const RobotBus& bus, robot::Track side);
 
 // Takes a shipped name ("kenaf") or the path of a TOML file. Throws DescriptionError with file, line and column: no
 // table [can], a key that is missing, unknown or out of range, a node id used twice, values that contradict each other
-// (a target beyond a drive's 32-bit numbers; a silence shorter than two heartbeats; a stop longer than stop_within_s:
-// see longest_stop_s).
+// (a device file that is missing or wrong; a target beyond a drive's 32-bit numbers; a silence shorter than two
+// heartbeats; a stop longer than stop_within_s: see longest_stop_s).
 RobotBus load_robot_bus(const std::string& name_or_path);
 RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors);
+
+// The mode in which the drive is enabled: that of its motions, or homing if the mode cannot change while it is enabled.
+canopen::DriveMode first_mode(const DriveOnBus& drive);
+// Returns object 0x100D for drives with node guarding: how many of the master's requests, one each master_heartbeat_s,
+// fit in master_silence_s.
+int life_time_factor(const RobotBus& bus);
 
 // Returns the time from the master's last sign of life until the slowest track stands: master_silence_s plus a quick
 // stop from full speed.

@@ -108,16 +108,18 @@ void set_option(int descriptor, int level, int option, const Option* values, std
 
 can_frame to_kernel(const Frame& frame) {
   can_frame out{};
-  out.can_id = frame.id;
+  out.can_id = frame.id | (frame.remote ? CAN_RTR_FLAG : 0);
   out.can_dlc = frame.length;
   std::ranges::copy(frame.data, out.data);
   return out;
 }
 
-// Accepts standard data frames only.
+// Accepts standard frames only.
 std::optional<Frame> from_kernel(const can_frame& frame) {
-  if ((frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0 || frame.can_dlc > CAN_MAX_DLEN) return {};
-  return canopen::make_frame(static_cast<std::uint16_t>(frame.can_id & CAN_SFF_MASK), {frame.data, frame.can_dlc});
+  if ((frame.can_id & (CAN_EFF_FLAG | CAN_ERR_FLAG)) != 0 || frame.can_dlc > CAN_MAX_DLEN) return {};
+  const auto id = static_cast<std::uint16_t>(frame.can_id & CAN_SFF_MASK);
+  if ((frame.can_id & CAN_RTR_FLAG) != 0) return Frame{.id = id, .length = frame.can_dlc, .remote = true};
+  return canopen::make_frame(id, {frame.data, frame.can_dlc});
 }
 
 // Gives the broadcast manager an order about the SYNC; `frame` is needed to set it up.
@@ -261,7 +263,7 @@ std::optional<ReceivedFrame> SocketBus::read_frame() {
       continue;
     }
 
-    // Skips frames with 29-bit identifiers and remote frames.
+    // Skips frames with 29-bit identifiers.
     const std::optional<Frame> received = from_kernel(frame);
     if (!received) continue;
     // The kernel stamps by the wall clock; both clocks, read together, turn that into the monotonic time of the

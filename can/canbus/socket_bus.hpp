@@ -23,8 +23,8 @@ class NoBus : public canopen::BusError {
 
 class SocketBus final : public canopen::Bus {
  public:
-  // Receives standard data frames with one of the identifiers `ids` (at most 512; none: all), and the controller's
-  // error frames. Throws NoBus.
+  // Receives standard data frames with one of the identifiers `ids` (at most 512; none: all, remote frames too), and
+  // the controller's error frames. Throws NoBus.
   explicit SocketBus(const std::string& interface, std::span<const std::uint16_t> ids = {});
   ~SocketBus() override;
   SocketBus(const SocketBus&) = delete;

@@ -48,12 +48,30 @@ void Drive::on_reset() {
   error_code_ = 0;
   outside_window_s_ = 0;
   motion_.reset(motor_, setup_.absolute_encoder ? 0 : -std::llround(motor_.position));
+  on_quirks();
+}
+
+// Values as a maker's tool or an earlier master left them.
+void Drive::on_quirks() {
+  constexpr std::int64_t kOldTarget = 20'000;
+  if (quirks().halt_blocks_mode) dictionary().set(object::controlword.object, canopen::kControlHalt);
+  if (quirks().old_target && power_.state() != PowerState::operation_enabled)
+    dictionary().set(object::target_velocity.object, kOldTarget);
+}
+
+void Drive::watch_slow_reset(double step_s) {
+  const bool high = (option(object::controlword) & canopen::kControlFaultReset) != 0;
+  reset_bit_s_ = quirks().slow_fault_reset && high && power_.state() == PowerState::fault ? reset_bit_s_ + step_s : 0;
+  if (reset_bit_s_ * 1e9 < static_cast<double>(kSlowReset.count())) return;
+  power_.on_controlword(canopen::kControlFaultReset);
+  errors().clear(std::exchange(error_code_, std::uint16_t{0}));
 }
 
 void Drive::step(Time step) {
   const double step_s = std::chrono::duration<double>(step).count();
   // The self-test takes one step; a newly written mode takes effect now.
   power_.self_test_passed();
+  watch_slow_reset(step_s);
   motion_.set_mode(static_cast<DriveMode>(option(object::mode)), motor_);
 
   // By state: follow the targets, stop on the ramp that an option code names, or hold.
@@ -112,9 +130,14 @@ void Drive::refresh() {
   values.set(object::statusword.object, status);
   values.set(object::error_code.object, error_code_);
   values.set(object::mode_display.object, static_cast<int>(motion_.mode()));
-  values.set(object::position_actual.object, motion_.position(motor_));
-  values.set(object::velocity_actual.object,
-             limited(motor_.velocity / setup_.scale.counts_per_velocity_unit, object::velocity_actual.type));
+  const std::int64_t counters = std::int64_t{1} << quirks().position_bits;
+  const std::int64_t position = motion_.position(motor_);
+  values.set(object::position_actual.object, quirks().position_bits < 32 ? position & (counters - 1) : position);
+  std::int64_t velocity =
+      limited(motor_.velocity / setup_.scale.counts_per_velocity_unit, object::velocity_actual.type);
+  if (quirks().velocity_unsigned) velocity = std::abs(velocity);
+  if (quirks().velocity_16_bits) velocity &= 0xffff;
+  values.set(object::velocity_actual.object, velocity);
   if (setup_.has_current)
     values.set(object::current_actual.object,
                limited(motor_.current_a * 1e6 / static_cast<double>(option(object::rated_current)),
@@ -126,6 +149,14 @@ void Drive::refresh() {
 }
 
 std::optional<canopen::SdoAbort> Drive::check_write(ObjectAddress at, std::int64_t value) {
+  const bool enabled = power_.state() == PowerState::operation_enabled;
+  if (at == object::mode.object) {
+    const bool halted = (option(object::controlword) & canopen::kControlHalt) != 0;
+    if ((quirks().mode_locked && enabled) || (quirks().halt_blocks_mode && halted))
+      return canopen::SdoAbort::not_in_this_state;
+  }
+  if (at == object::target_velocity.object && quirks().old_target && takes_pdo() && !enabled)
+    return canopen::SdoAbort::not_in_this_state;
   return check_drive_object(at, value);
 }
 
@@ -136,6 +167,7 @@ void Drive::on_write(ObjectAddress at, std::int64_t value) {
 
 void Drive::on_controlword(std::uint16_t controlword) {
   const PowerState before = power_.state();
+  if (before == PowerState::fault && quirks().slow_fault_reset) return;  // watch_slow_reset
   power_.on_controlword(controlword);
   const PowerState after = power_.state();
   const bool enabled = after == PowerState::operation_enabled;

@@ -45,11 +45,14 @@ class Drive final : public Slave {
 
  private:
   void on_reset() override;
+  void on_quirks() override;
+  void on_overrun() override { fail(canopen::kErrorOverrun); }
   void refresh() override;
   std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress at, std::int64_t value) override;
   void on_write(canopen::ObjectAddress at, std::int64_t value) override;
   void on_connection_lost(std::uint16_t error_code) override;
   void on_controlword(std::uint16_t controlword);
+  void watch_slow_reset(double step_s);
   void begin_quick_stop();
   void watch_following(double step_s);
   std::int64_t option(const canopen::MappedObject& at) const { return objects().value(at.object); }
@@ -61,6 +64,7 @@ class Drive final : public Slave {
   std::uint16_t error_code_ = 0;  // the cause of the fault
   double outside_window_s_ = 0;
   bool deaf_ = false;
+  double reset_bit_s_ = 0;  // how long bit 7 of the controlword has been high in the fault: slow fault reset
 };
 
 }  // namespace kenaf::candrives

@@ -20,6 +20,18 @@ bool answers_segment(const Frame& frame) {
   return frame.data[0] >> 5 <= 1;
 }
 
+// Bytes that CiA 301, 7.2.4.3, reserves or leaves unused: behind the value of an expedited upload, and behind the
+// address in the answer to a download.
+void fill_unused(Frame& answer) {
+  constexpr std::uint8_t kUploadAnswer = 0x40, kDownloadAnswer = 0x60, kExpeditedWithSize = 0x03, kNoise = 0xa5;
+  const std::uint8_t specifier = answer.data[0] & 0xe0;
+  std::size_t used = answer.length;
+  if (specifier == kDownloadAnswer) used = 4;
+  if (specifier == kUploadAnswer && (answer.data[0] & kExpeditedWithSize) == kExpeditedWithSize)
+    used = 8u - (answer.data[0] >> 2 & 3u);
+  for (std::size_t i = used; i < answer.length; ++i) answer.data[i] = static_cast<std::uint8_t>(kNoise + 31 * i);
+}
+
 constexpr std::uint8_t kAbort = 0x80, kToggle = 0x10;
 
 }  // namespace
@@ -37,6 +49,8 @@ Frame altered(const Frame& frame, NodeId node, const NodeFaults& faults) {
     canopen::put(on_bus.data, 4, 4, static_cast<std::uint32_t>(canopen::SdoAbort::general));
   } else if (faults.sdo_wrong_toggle && answers_segment(frame)) {
     on_bus.data[0] ^= kToggle;
+  } else if (faults.sdo_garbage) {
+    fill_unused(on_bus);
   }
   return on_bus;
 }

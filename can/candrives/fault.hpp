@@ -21,7 +21,22 @@ enum class FaultKind : std::uint8_t {
   sdo_wrong_toggle,  // each segment's answer has the wrong toggle bit
   short_pdos,        // its PDOs lack their last byte
   garbage,           // whole bus: one random frame each millisecond
-  healed,            // ends all of these
+  sdo_garbage,       // SDO answers have random bytes where they have no data
+  // What drives of some types always do: quirks.hpp.
+  slow_boot,
+  guarding_only,
+  count_first,
+  fixed_mapping,
+  slow_commands,
+  mode_locked,
+  halt_blocks_mode,
+  old_target,
+  slow_fault_reset,
+  velocity_unsigned,
+  velocity_16_bits,
+  position_16_bits,
+  position_24_bits,
+  healed,  // ends all of these
 };
 
 inline constexpr canopen::Time kPowerGap = std::chrono::milliseconds(500), kLateBy = std::chrono::seconds(1);
@@ -34,7 +49,8 @@ struct Fault {
 
 // Faults between a node and the bus.
 struct NodeFaults {
-  bool silent = false, sdo_abort = false, sdo_late = false, sdo_wrong_toggle = false, short_pdos = false;
+  bool silent = false, sdo_abort = false, sdo_late = false, sdo_wrong_toggle = false, short_pdos = false,
+       sdo_garbage = false;
 };
 // Returns the node's frame as it appears on the bus.
 canopen::Frame altered(const canopen::Frame& frame, canopen::NodeId node, const NodeFaults& faults);

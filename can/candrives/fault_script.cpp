@@ -30,6 +30,20 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"sdo wrong toggle", FaultKind::sdo_wrong_toggle},
                                                     {"short pdos", FaultKind::short_pdos},
                                                     {"garbage", FaultKind::garbage},
+                                                    {"sdo garbage", FaultKind::sdo_garbage},
+                                                    {"slow boot", FaultKind::slow_boot},
+                                                    {"node guarding only", FaultKind::guarding_only},
+                                                    {"count first", FaultKind::count_first},
+                                                    {"fixed mapping", FaultKind::fixed_mapping},
+                                                    {"slow commands", FaultKind::slow_commands},
+                                                    {"mode locked", FaultKind::mode_locked},
+                                                    {"halt blocks mode", FaultKind::halt_blocks_mode},
+                                                    {"old target", FaultKind::old_target},
+                                                    {"slow fault reset", FaultKind::slow_fault_reset},
+                                                    {"velocity unsigned", FaultKind::velocity_unsigned},
+                                                    {"velocity 16 bits", FaultKind::velocity_16_bits},
+                                                    {"position 16 bits", FaultKind::position_16_bits},
+                                                    {"position 24 bits", FaultKind::position_24_bits},
                                                     {"healed", FaultKind::healed}});
 
 constexpr std::string_view kBlanks = " \t\r";

@@ -4,7 +4,9 @@
 //
 //   WHO    node NUMBER, a drive's name ("track left"), inclinometer, gyro, all, bus
 //   WHAT   silent, power loss, fault CODE, following error, deaf, sdo abort, sdo late, sdo wrong toggle, short pdos,
-//          garbage (of the bus), healed; can/candrives/fault.hpp tells what each does
+//          garbage (of the bus), healed; can/candrives/fault.hpp tells what each does. And quirks of drives' types,
+//          each by the words of its name in can/candrives/quirks.hpp: slow boot, node guarding only, position 16 bits,
+//          ...
 //   at     since the program began; "after motion": since a track turned for the first time; neither: at once
 //   for    then it is healed
 #pragma once

@@ -81,12 +81,16 @@ std::optional<SdoAbort> ProcessData::check_cob_id(const State& state, std::int64
   const auto wanted = static_cast<std::uint32_t>(value);
   if ((wanted & ~(canopen::kPdoInvalid | canopen::kPdoNoRemoteRequest)) > 0x7ff || is_restricted(wanted & 0x7ff))
     return SdoAbort::invalid_value;
+  if (quirks_.count_first && is_active(state) && (wanted & canopen::kPdoInvalid) != 0)
+    return SdoAbort::incompatible_parameter;
   if (is_valid(state) && ((now ^ wanted) & ~canopen::kPdoInvalid) != 0) return SdoAbort::invalid_value;
   return std::nullopt;
 }
 
 std::optional<SdoAbort> ProcessData::check_mapping(const State& state, std::uint8_t sub, std::int64_t value) const {
-  if (is_valid(state)) return SdoAbort::unsupported_access;
+  if (quirks_.fixed_mapping) return SdoAbort::cannot_be_mapped;
+  const bool may_empty = quirks_.count_first && sub == 0 && value == 0;
+  if (is_valid(state) && !may_empty) return SdoAbort::unsupported_access;
   if (sub > 0) {
     if (objects_->value({state.mapping, 0}) != 0) return SdoAbort::unsupported_access;
     const ObjectEntry* entry = objects_->find(address_of(value));
@@ -175,6 +179,12 @@ Frame ProcessData::pack(const State& state) const {
     data.insert(data.end(), value.begin(), value.end());
   }
   return canopen::make_frame(static_cast<std::uint16_t>(objects_->value({state.communication, kCobId}) & 0x7ff), data);
+}
+
+bool ProcessData::receives(const Frame& frame) const {
+  return std::ranges::any_of(pdos_, [&](const State& state) {
+    return !state.transmit && is_active(state) && (objects_->value({state.communication, kCobId}) & 0x7ff) == frame.id;
+  });
 }
 
 ProcessData::Reception ProcessData::on_frame(const Frame& frame, Time now) {

@@ -37,6 +37,13 @@ class ProcessData {
   // Adds the records of `pdos`: the node has these PDOs and no others. The dictionary must outlive this object.
   ProcessData(canopen::NodeId node, Dictionary& objects, const std::vector<DefaultPdo>& pdos);
 
+  // Rules of nodes that have others than the standard.
+  struct Quirks {
+    bool count_first;    // a PDO with mapped objects cannot be switched off, but its mapping emptied while it is valid
+    bool fixed_mapping;  // no mapping can be written
+  };
+  void set_quirks(Quirks quirks) { quirks_ = quirks; }
+
   // Checks the rules of the two records above; nullopt also if the object belongs to neither.
   std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value) const;
 
@@ -45,6 +52,8 @@ class ProcessData {
   // The node becomes operational: all PDOs restart, and earlier data are neither used nor sent.
   void begin();
 
+  // True if the frame is an RPDO of this node.
+  bool receives(const canopen::Frame& frame) const;
   enum class Reception { not_for_me, taken, too_short };
   Reception on_frame(const canopen::Frame& frame, canopen::Time now);
   // True once after the event timer of an RPDO has expired.
@@ -86,6 +95,7 @@ class ProcessData {
 
   Dictionary* objects_;
   std::vector<State> pdos_;
+  Quirks quirks_{};
 };
 
 }  // namespace kenaf::candrives

@@ -159,8 +159,11 @@ void RobotSlaves::inject(const Fault& fault, Time now, Frames& out) {
 }
 
 void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
-  // Drive faults go to the drive; frame faults set flags for serve() and pass_on(); garbage belongs to the bus.
+  // Quirks go to the node; drive faults to the drive; frame faults set flags for serve() and pass_on(); garbage belongs
+  // to the bus.
   Drive* drive = as_drive(node);
+  Quirks quirks = node.slave->quirks();
+  if (switch_on(quirks, fault.kind)) return node.slave->set_quirks(quirks);
   switch (fault.kind) {
     case FaultKind::silent:
       node.faults.silent = true;
@@ -194,13 +197,17 @@ void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
     case FaultKind::short_pdos:
       node.faults.short_pdos = true;
       return;
-    case FaultKind::garbage:
+    case FaultKind::sdo_garbage:
+      node.faults.sdo_garbage = true;
       return;
     case FaultKind::healed:
       node.faults = {};
       node.slave->ignore_heartbeat(false);
       node.slave->ignore_event_timer(false);
+      node.slave->set_quirks({});
       if (drive != nullptr) drive->set_deaf(false);
+      return;
+    default:
       return;
   }
 }

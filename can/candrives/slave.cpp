@@ -32,6 +32,8 @@ void add_communication_objects(Dictionary& objects, canopen::NodeId node, const 
   objects.add(canopen::object::error_register, Access::read_only, Mappable::transmit, 0);
   constant({{0x1005, 0}, ObjectType::unsigned32}, canopen::kSyncId);
   objects.add_text(canopen::object::device_name, identity.name);
+  objects.add(canopen::object::guard_time_ms, Access::read_write, Mappable::no, 0);
+  objects.add(canopen::object::life_time_factor, Access::read_write, Mappable::no, 0);
   constant(canopen::object::emergency_id, canopen::kEmergencyId + node);
   constant(canopen::object::consumer_heartbeat_count, 1);
   objects.add(canopen::object::consumer_heartbeat_1, Access::read_write, Mappable::no, 0, {0, 0x00ffffff});
@@ -56,11 +58,27 @@ Slave::Slave(canopen::NodeId node, const DeviceIdentity& identity, const std::ve
 }
 
 canopen::ObjectAccess Slave::object_access() {
-  return {[this](ObjectAddress at) {
+  return {[this](ObjectAddress at) -> std::variant<canopen::ObjectBytes, SdoAbort> {
+            if (is_hidden(at)) return SdoAbort::no_object;
             refresh();
             return objects_.read(at);
           },
-          [this](ObjectAddress at, std::span<const std::uint8_t> bytes) { return objects_.write(at, bytes); }};
+          [this](ObjectAddress at, std::span<const std::uint8_t> bytes) -> std::optional<SdoAbort> {
+            if (is_hidden(at)) return SdoAbort::no_object;
+            return objects_.write(at, bytes);
+          }};
+}
+
+bool Slave::is_hidden(ObjectAddress at) const {
+  const bool is_heartbeat = at.index == canopen::object::consumer_heartbeat_1.object.index ||
+                            at.index == canopen::object::producer_heartbeat_ms.object.index;
+  return quirks_.guarding_only && is_heartbeat;
+}
+
+void Slave::set_quirks(const Quirks& quirks) {
+  quirks_ = quirks;
+  process_data_.set_quirks({quirks.count_first, quirks.fixed_mapping});
+  on_quirks();
 }
 
 // ---- NMT ----
@@ -70,10 +88,17 @@ void Slave::power_on(Time now, Frames& out) {
   errors_.reset();
   reset_communication();
   on_reset();
-  boot(now, out);
+  begin_boot(now, out);
+}
+
+void Slave::begin_boot(Time now, Frames& out) {
+  if (!quirks_.slow_boot) return boot(now, out);
+  state_ = NmtState::boot_up;
+  boot_at_ = now + kSlowBoot;
 }
 
 void Slave::boot(Time now, Frames& out) {
+  boot_at_ = Time::max();
   out.push_back(encode(canopen::Heartbeat{node_, NmtState::boot_up}));
   enter(NmtState::pre_operational);
   on_time(now, out);
@@ -86,7 +111,8 @@ void Slave::reset_communication() {
   errors_.forget(canopen::kErrorPdoTimeOut);
   sdo_ = canopen::SdoServer(node_, object_access());
   next_heartbeat_ = master_lost_at_ = Time::max();
-  heartbeat_changed_ = false;
+  heartbeat_changed_ = guard_toggle_ = false;
+  syncs_since_pdo_ = kSyncsOfSlowCommand;
 }
 
 void Slave::enter(NmtState state) {
@@ -108,16 +134,21 @@ void Slave::on_order(NmtCommand command, Time now, Frames& out) {
     case NmtCommand::reset_communication:
       on_connection_lost(canopen::kErrorHeartbeat);  // before the objects that configure the reaction are reset
       reset_communication();
-      return boot(now, out);
+      return begin_boot(now, out);
   }
 }
 
 // ---- frames ----
 
 void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
+  if (boot_at_ != Time::max()) return;
   // The master's heartbeat, or the time of its commands, may have expired before this frame came.
   watch_master(now);
   watch_commands(now);
+  if (frame.remote) {
+    if (canopen::guard_request_from(frame) == node_) on_guard_request(now, out);
+    return;
+  }
   // By kind: NMT for this node or all, heartbeats, SYNC, SDO (not while stopped), and PDOs (operational only).
   if (const auto order = canopen::nmt_order_from(frame)) {
     if (order->node == 0 || order->node == node_) on_order(order->command, now, out);
@@ -129,7 +160,11 @@ void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
     if (state_ == NmtState::stopped) return;
     if (const auto answer = sdo_.on_frame(frame)) out.push_back(*answer);
   } else if (state_ == NmtState::operational) {
-    switch (process_data_.on_frame(frame, now)) {
+    if (process_data_.receives(frame) && comes_too_soon(frame)) return on_overrun();
+    takes_pdo_ = true;
+    const ProcessData::Reception reception = process_data_.on_frame(frame, now);
+    takes_pdo_ = false;
+    switch (reception) {
       case ProcessData::Reception::not_for_me:
         return;
       case ProcessData::Reception::too_short:
@@ -147,9 +182,34 @@ void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
 void Slave::on_sync(const Frame& frame, Time now, Frames& out) {
   if (!canopen::is_sync(frame)) return errors_.raise(canopen::kErrorSyncLength);
   errors_.clear(canopen::kErrorSyncLength);
-  if (state_ == NmtState::operational)
-    process_data_.on_sync(
-        now, [this] { refresh(); }, out);
+  if (syncs_since_pdo_ < kSyncsOfSlowCommand) ++syncs_since_pdo_;
+  if (state_ != NmtState::operational) return;
+  takes_pdo_ = true;
+  process_data_.on_sync(
+      now,
+      [this] {
+        takes_pdo_ = false;
+        refresh();
+      },
+      out);
+}
+
+// Counted from the last one that came, also if it was lost.
+bool Slave::comes_too_soon(const Frame& frame) {
+  if (!quirks_.slow_commands || frame.remote) return false;
+  return std::exchange(syncs_since_pdo_, 0) < kSyncsOfSlowCommand;
+}
+
+// CiA 301, 7.2.8.2.1: a node with a heartbeat of its own is not guarded. The watch begins with the first request.
+void Slave::on_guard_request(Time now, Frames& out) {
+  if (objects_.value(canopen::object::producer_heartbeat_ms.object) != 0) return;
+  out.push_back(encode(canopen::ErrorControl{node_, state_, guard_toggle_}));
+  guard_toggle_ = !guard_toggle_;
+  const auto life = std::chrono::milliseconds(objects_.value(canopen::object::guard_time_ms.object) *
+                                              objects_.value(canopen::object::life_time_factor.object));
+  if (life.count() == 0) return;
+  master_lost_at_ = now + life;
+  errors_.clear(canopen::kErrorHeartbeat);
 }
 
 // ---- heartbeats ----
@@ -189,6 +249,7 @@ void Slave::watch_commands(Time now) {
 // ---- time ----
 
 void Slave::on_time(Time now, Frames& out) {
+  if (now >= boot_at_) return boot(now, out);
   if (state_ == NmtState::boot_up) return;
   watch_master(now);
   watch_commands(now);
@@ -213,7 +274,7 @@ void Slave::send_messages(Time now, Frames& out) {
 
 Time Slave::deadline() const {
   const Time of_pdo = state_ == NmtState::operational ? process_data_.deadline() : Time::max();
-  return std::min({next_heartbeat_, master_lost_at_, of_pdo});
+  return std::min({next_heartbeat_, master_lost_at_, boot_at_, of_pdo});
 }
 
 bool Slave::follows_data() const {
@@ -231,7 +292,7 @@ std::optional<SdoAbort> Slave::check(ObjectAddress at, std::int64_t value) {
 
 void Slave::written(ObjectAddress at, std::int64_t value) {
   if (at == canopen::object::producer_heartbeat_ms.object) heartbeat_changed_ = true;
-  if (at == canopen::object::consumer_heartbeat_1.object) {
+  if (at == canopen::object::consumer_heartbeat_1.object || at == canopen::object::life_time_factor.object) {
     master_lost_at_ = Time::max();
     errors_.clear(canopen::kErrorHeartbeat);
   }

@@ -4,6 +4,7 @@
 //   SDO          its object dictionary, read and written by the master                                    7.2.4
 //   PDO, SYNC    process_data.hpp; RPDOs that stay away for longer than their event timer                 7.2.2, 7.2.5
 //   heartbeat    its own (object 0x1017), and the master's, which it watches (0x1016)                     7.2.8.2.2
+//   guarding     answers to the master's requests, and the watch for them (0x100C, 0x100D)                7.2.8.2.1
 //   emergency    error_state.hpp                                                                          7.2.7
 //
 //                     power on, reset node
@@ -22,6 +23,7 @@
 #include "can/candrives/dictionary.hpp"
 #include "can/candrives/error_state.hpp"
 #include "can/candrives/process_data.hpp"
+#include "can/candrives/quirks.hpp"
 #include "can/canopen/nmt.hpp"
 #include "can/canopen/sdo_server.hpp"
 
@@ -44,6 +46,9 @@ class Slave {
   canopen::NmtState state() const { return state_; }
   const Dictionary& objects() const { return objects_; }
 
+  const Quirks& quirks() const { return quirks_; }
+  void set_quirks(const Quirks& quirks);
+
   // All objects at their initial values, then the boot-up message.
   void power_on(canopen::Time now, Frames& out);
   void on_frame(const canopen::Frame& frame, canopen::Time now, Frames& out);
@@ -63,6 +68,12 @@ class Slave {
   Dictionary& dictionary() { return objects_; }
   ErrorState& errors() { return errors_; }
 
+  // Quirks have changed.
+  virtual void on_quirks() {}
+  // A PDO came too soon after the one before, for a node that is slow to take them, and is lost.
+  virtual void on_overrun() {}
+  // True while objects are written by a PDO, not by SDO.
+  bool takes_pdo() const { return takes_pdo_; }
   // Power on or node reset; objects have their initial values.
   virtual void on_reset() {}
   // Brings measurements into the dictionary before they are read or sent.
@@ -77,7 +88,11 @@ class Slave {
  private:
   canopen::ObjectAccess object_access();
   void on_order(canopen::NmtCommand command, canopen::Time now, Frames& out);
+  void begin_boot(canopen::Time now, Frames& out);
   void boot(canopen::Time now, Frames& out);
+  void on_guard_request(canopen::Time now, Frames& out);
+  bool is_hidden(canopen::ObjectAddress at) const;
+  bool comes_too_soon(const canopen::Frame& frame);
   void reset_communication();
   void enter(canopen::NmtState state);
   void on_sync(const canopen::Frame& frame, canopen::Time now, Frames& out);
@@ -97,7 +112,12 @@ class Slave {
   canopen::Time next_heartbeat_ = canopen::Time::max();
   canopen::Time master_lost_at_ = canopen::Time::max();  // max: not received yet, or already lost
   bool heartbeat_ignored_ = false, event_timer_ignored_ = false;
-  bool heartbeat_changed_ = false;  // object 0x1017 was written: takes effect at once
+  bool heartbeat_changed_ = false;                // object 0x1017 was written: takes effect at once
+  canopen::Time boot_at_ = canopen::Time::max();  // slow boot
+  bool guard_toggle_ = false;                     // of the next answer
+  bool takes_pdo_ = false;
+  Quirks quirks_;
+  int syncs_since_pdo_ = kSyncsOfSlowCommand;
 };
 
 }  // namespace kenaf::candrives

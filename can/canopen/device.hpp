@@ -22,7 +22,8 @@ constexpr std::uint32_t consumer_heartbeat(std::uint8_t node, std::uint16_t time
 
 namespace object {
 inline constexpr MappedObject device_type{{0x1000, 0}, ObjectType::unsigned32},
-    error_register{{0x1001, 0}, ObjectType::unsigned8}, emergency_id{{0x1014, 0}, ObjectType::unsigned32},
+    error_register{{0x1001, 0}, ObjectType::unsigned8}, guard_time_ms{{0x100c, 0}, ObjectType::unsigned16},
+    life_time_factor{{0x100d, 0}, ObjectType::unsigned8}, emergency_id{{0x1014, 0}, ObjectType::unsigned32},
     consumer_heartbeat_count{{0x1016, 0}, ObjectType::unsigned8},
     consumer_heartbeat_1{{0x1016, 1}, ObjectType::unsigned32},
     producer_heartbeat_ms{{0x1017, 0}, ObjectType::unsigned16}, vendor_id{{0x1018, 1}, ObjectType::unsigned32},

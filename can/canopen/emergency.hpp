@@ -32,7 +32,8 @@ std::string describe(const Emergency& emergency);
 
 // Codes that this project's own programs send or check.
 inline constexpr std::uint16_t kErrorNone = 0x0000, kErrorContinuousOverCurrent = 0x2310,
-                               kErrorOverTemperature = 0x4310, kErrorHeartbeat = 0x8130, kErrorPdoTooShort = 0x8210,
-                               kErrorPdoTimeOut = 0x8250, kErrorSyncLength = 0x8240, kErrorFollowing = 0x8611;
+                               kErrorOverTemperature = 0x4310, kErrorOverrun = 0x8110, kErrorHeartbeat = 0x8130,
+                               kErrorPdoTooShort = 0x8210, kErrorSyncLength = 0x8240, kErrorPdoTimeOut = 0x8250,
+                               kErrorFollowing = 0x8611;
 
 }  // namespace kenaf::canopen

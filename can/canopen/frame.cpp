@@ -38,7 +38,7 @@ std::optional<std::int32_t> bits_of(const Frame& frame, unsigned first_bit, unsi
 }
 
 int worst_case_bits(const Frame& frame) {
-  const int data_bits = 8 * frame.length;
+  const int data_bits = frame.remote ? 0 : 8 * frame.length;
   return 47 + data_bits + (34 + data_bits - 1) / 4;
 }
 

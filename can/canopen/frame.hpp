@@ -1,4 +1,4 @@
-// A classic CAN data frame with an 11-bit identifier, as used by CANopen, and the little-endian numbers in it.
+// A classic CAN frame with an 11-bit identifier, as used by CANopen, and the little-endian numbers in it.
 //
 // CANopen's standards, as cited in this room: CiA 301 version 4.2 (application layer), CiA 402 (IEC 61800-7-201,
 // drives), CiA 410 (inclinometers). Everything in this room is free of sockets and clocks: frames and times go in,
@@ -24,6 +24,7 @@ struct Frame {
   std::uint16_t id = 0;                             // 0 to 0x7ff: CANopen's COB-ID
   std::uint8_t length = 0;                          // 0 to 8
   std::array<std::uint8_t, kMaxFrameBytes> data{};  // 0 beyond length
+  bool remote = false;  // asks for a frame of this identifier, without data: CANopen's node guarding alone does so
   bool operator==(const Frame&) const = default;
 };
 

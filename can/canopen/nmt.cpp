@@ -5,6 +5,8 @@
 namespace kenaf::canopen {
 namespace {
 
+constexpr std::uint8_t kGuardToggle = 0x80;
+
 bool is_state(std::uint8_t value) {
   switch (static_cast<NmtState>(value)) {
     case NmtState::boot_up:
@@ -61,19 +63,33 @@ Frame encode(const Heartbeat& heartbeat) {
 }
 
 std::optional<Heartbeat> heartbeat_from(const Frame& frame) {
-  if (frame.id <= kHeartbeatId || frame.id > kHeartbeatId + kMaxNode || frame.length != 1 || !is_state(frame.data[0]))
-    return std::nullopt;
+  const bool of_node = frame.id > kHeartbeatId && frame.id <= kHeartbeatId + kMaxNode;
+  if (frame.remote || !of_node || frame.length != 1 || !is_state(frame.data[0])) return std::nullopt;
   return Heartbeat{static_cast<NodeId>(frame.id - kHeartbeatId), static_cast<NmtState>(frame.data[0])};
 }
 
 std::optional<ErrorControl> error_control_from(const Frame& frame) {
-  constexpr std::uint8_t kGuardToggle = 0x80;
   Frame without_toggle = frame;
   without_toggle.data[0] &= static_cast<std::uint8_t>(~kGuardToggle);
   const auto heartbeat = heartbeat_from(without_toggle);
   const bool toggle = (frame.data[0] & kGuardToggle) != 0;
   if (!heartbeat || (toggle && heartbeat->state == NmtState::boot_up)) return std::nullopt;
   return ErrorControl{heartbeat->node, heartbeat->state, toggle};
+}
+
+Frame guard_request(NodeId node) {
+  return {.id = static_cast<std::uint16_t>(kHeartbeatId + node), .length = 1, .remote = true};
+}
+
+std::optional<NodeId> guard_request_from(const Frame& frame) {
+  if (!frame.remote || frame.id <= kHeartbeatId || frame.id > kHeartbeatId + kMaxNode) return std::nullopt;
+  return static_cast<NodeId>(frame.id - kHeartbeatId);
+}
+
+Frame encode(const ErrorControl& answer) {
+  Frame frame = encode(Heartbeat{answer.node, answer.state});
+  if (answer.toggle) frame.data[0] |= kGuardToggle;
+  return frame;
 }
 
 bool is_sync(const Frame& frame) {

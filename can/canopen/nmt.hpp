@@ -57,6 +57,12 @@ struct ErrorControl {
 // nullopt: another identifier, not one byte, or a state not in CiA 301.
 std::optional<ErrorControl> error_control_from(const Frame& frame);
 
+// Node guarding, 7.2.8.3.2.1: the master's request, which the node answers by its ErrorControl.
+Frame guard_request(NodeId node);
+// The node that is asked; nullopt for any other frame.
+std::optional<NodeId> guard_request_from(const Frame& frame);
+Frame encode(const ErrorControl& answer);
+
 // A SYNC without counter, as of a SYNC producer whose object 0x1019 is 0.
 inline constexpr Frame kSync{.id = kSyncId};
 // A SYNC with a counter byte counts too.

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace kenaf::description {
 namespace {
@@ -12,6 +15,22 @@ std::string range_text(Range range) {
   if (std::isinf(range.max)) return fmt::format("{} {}", range.open_min ? "more than" : "at least", range.min);
   return fmt::format("{} {} to {}", range.open_min ? "more than" : "from", range.min, range.max);
 }
+
+// Letters to insert, remove or replace to make one word the other (Levenshtein, 1966).
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+    }
+  }
+  return row.back();
+}
+
+constexpr std::size_t kLongestKey = 60;  // of those that are compared; all known ones are shorter
 
 }  // namespace
 
@@ -45,6 +64,11 @@ const toml::node& TomlReader::node(std::string_view key) {
   const toml::node* found = table_.get(key);
   if (!found) fail(key, "is missing");
   return *found;
+}
+
+bool TomlReader::has(std::string_view key) const {
+  asked_.emplace_back(key);
+  return table_.contains(key);
 }
 
 double TomlReader::checked(std::string_view key, const toml::node& node, Range range) const {
@@ -139,8 +163,24 @@ std::vector<TomlReader> TomlReader::one_or_more_tables(std::string_view key) {
 
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
-    if (std::find(read_.begin(), read_.end(), key.str()) == read_.end())
-      fail_at(key.source(), fmt::format("{} is not a known key", name_of(key.str())));
+    const std::string_view name = key.str();
+    if (std::find(read_.begin(), read_.end(), name) != read_.end()) continue;
+
+    // A slip of the pen is a third of the letters at most (chosen), and the key meant is not there beside it.
+    std::string_view meant;
+    std::size_t fewest = name.size() / 3 + 1;
+    for (const std::vector<std::string>* known : std::array<const std::vector<std::string>*, 2>{&read_, &asked_}) {
+      for (const std::string& other : *known) {
+        if (name.size() > kLongestKey || table_.contains(other)) continue;
+        const std::size_t edits = edits_between(name, other);
+        if (edits < fewest) {
+          fewest = edits;
+          meant = other;
+        }
+      }
+    }
+    fail_at(key.source(), fmt::format("{} is not a known key{}", name_of(name),
+                                      meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
   }
 }
 

@@ -30,7 +30,8 @@ class TomlReader {
   // `where` is the table's dotted name for messages, empty for the file itself. Both references must outlive this.
   TomlReader(const toml::table& table, std::string where, const std::string& file);
 
-  bool has(std::string_view key) const { return table_.contains(key); }
+  const std::string& file() const { return file_; }
+  bool has(std::string_view key) const;
   double number(std::string_view key, Range range = kAny);
   double number_or(std::string_view key, double fallback, Range range = kAny);
   int integer(std::string_view key, int min, int max);
@@ -45,7 +46,7 @@ class TomlReader {
 
   // Ignores the key, which another reader reads.
   void leave(std::string_view key) { read_.emplace_back(key); }
-  // Throws if the table has a key that was not read.
+  // Throws if the table has a key that was not read; names a similar one that the table may have, if there is one.
   void finish() const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
@@ -59,6 +60,7 @@ class TomlReader {
   std::string where_;
   const std::string& file_;
   std::vector<std::string> read_;
+  mutable std::vector<std::string> asked_;  // optional keys, whether they are there or not
 };
 
 }  // namespace kenaf::description

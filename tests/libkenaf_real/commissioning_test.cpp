@@ -1,10 +1,9 @@
 // What is written to a drive, by hand.
-#include "libkenaf_real/commissioning.hpp"
+#include "can/canbus/node_setup.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace kenaf;
-using namespace kenaf::real;
 
 TEST_CASE("The time between targets is in milliseconds where it is a whole number of them, else as fine as it fits") {
   canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
@@ -17,9 +16,9 @@ TEST_CASE("The time between targets is in milliseconds where it is a whole numbe
   for (const Case& one :
        {Case{0.01, 10, -3}, Case{0.02, 20, -3}, Case{0.005, 5, -3}, Case{0.0025, 250, -5}, Case{0.0015, 150, -5}}) {
     std::optional<std::int64_t> number, exponent;
-    for (const canopen::SdoWrite& write : parameters_of(bus, 0, one.period_s)) {
-      if (write.object == canopen::object::interpolation_period.object) number = write.value;
-      if (write.object == canopen::object::interpolation_exponent.object) exponent = write.value;
+    for (const canbus::SdoStep& step : set_up_of_drive(bus, 0, one.period_s)) {
+      if (step.what.object == canopen::object::interpolation_period.object) number = step.what.value;
+      if (step.what.object == canopen::object::interpolation_exponent.object) exponent = step.what.value;
     }
     CAPTURE(one.period_s);
     CHECK(number == one.number);
