@@ -12,6 +12,7 @@
 
 #include "formats/description/data_files.hpp"
 #include "formats/description/description_file.hpp"
+#include "formats/description/flipper_pairs.hpp"
 #include "formats/description/toml_reader.hpp"
 
 namespace kenaf::physics {
@@ -146,6 +147,8 @@ TrackDriveDescription read_drive(TomlReader table) {
 }
 
 FlipperDescription read_flipper(TomlReader table) {
+  if (description::read_flipper_pairs(table) != description::FlipperPairs{})
+    table.fail("pairs", "is for the robot's bus alone: the simulator has robots with four flippers, or without");
   FlipperDescription flipper{
       .mass_kg = table.number("mass_kg", kPositive),
       .length_m = table.number("length_m", kPositive),

@@ -119,6 +119,7 @@ std::vector<std::uint16_t> ids_to_hear(const RobotBus& bus) {
 double worst_case_bits_per_s(const RobotBus& bus, double period_s) {
   double bits = 0;
   for (const Traffic& traffic : traffic_of(bus, period_s)) bits += worst_case_bits(traffic.frame) * traffic.per_s;
+  for (const OtherOnBus& other : bus.others) bits += other.bits_per_s;
   return bits;
 }
 

@@ -27,8 +27,9 @@ canopen::Pdo inclinometer_pdo();  // TPDO1, each SYNC: longitudinal, lateral slo
 // Returns the identifiers that the master must receive: its nodes' frames, SYNC, and another master's heartbeat.
 std::vector<std::uint16_t> ids_to_hear(const RobotBus& bus);
 
-// Returns bits per second on the wire, with the maximum of stuff bits, at this period; heartbeats included.
+// Returns bits per second on the wire, with the maximum of stuff bits, at this period; heartbeats included, and the
+// traffic of devices of others as far as the description has it.
 double worst_case_bits_per_s(const RobotBus& bus, double period_s);
-double frames_per_s(const RobotBus& bus, double period_s);
+double frames_per_s(const RobotBus& bus, double period_s);  // of the robot's own
 
 }  // namespace kenaf::canbus

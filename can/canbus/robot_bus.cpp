@@ -252,6 +252,19 @@ GyroOnBus read_gyro(TomlReader table) {
   return out;
 }
 
+std::vector<OtherOnBus> read_others(std::vector<TomlReader> tables) {
+  std::vector<OtherOnBus> out;
+  for (TomlReader& table : tables) {
+    OtherOnBus other{.name = table.text("name"),
+                     .node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode)),
+                     .bits_per_s = table.number_or("bits_per_s", 0, {.min = 0, .max = 1e6})};
+    if (other.name.empty() || other.name.size() > 60) table.fail("name", "must be of 1 to 60 characters");
+    table.finish();
+    out.push_back(std::move(other));
+  }
+  return out;
+}
+
 void check_nodes(TomlReader& table, const RobotBus& bus) {
   std::map<NodeId, std::string_view> taken;
   const auto take = [&](NodeId node, std::string_view name, std::string_view key) {
@@ -263,6 +276,7 @@ void check_nodes(TomlReader& table, const RobotBus& bus) {
     take(drive.node, drive.name, drive.is_flipper() ? "flipper" : table.has("wheel") ? "wheel" : "track");
   if (bus.inclinometer) take(bus.inclinometer->node, "inclinometer", "inclinometer");
   if (bus.gyro) take(bus.gyro->node, "gyro", "gyro");
+  for (const OtherOnBus& other : bus.others) take(other.node, other.name, "other");
 }
 
 // Between the tracks, or the wheels in the mean; 0 if the description has neither.
@@ -321,6 +335,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   // Optional sensors; finally, node ids must be unique.
   if (table.has("inclinometer")) bus.inclinometer = read_inclinometer(table.table("inclinometer"));
   if (table.has("gyro")) bus.gyro = read_gyro(table.table("gyro"));
+  bus.others = read_others(table.tables("other"));
   check_nodes(table, bus);
   table.finish();
   return bus;

@@ -72,6 +72,14 @@ struct GyroOnBus {
   double units_per_radps;        // with the sign that makes a turn to the left positive
 };
 
+// A device of somebody else on the bus: nothing is sent to it, and nothing it sends counts. Devices that are on the bus
+// and not in the description are left alone too; naming one makes its traffic count in the load of the bus.
+struct OtherOnBus {
+  std::string name;
+  canopen::NodeId node;
+  double bits_per_s = 0;  // of its traffic
+};
+
 struct RobotBus {
   std::string interface;       // "can0"
   int bit_rate;                // bits per second, as the interface is configured; used for the bus load
@@ -96,6 +104,7 @@ struct RobotBus {
   std::vector<DriveOnBus> drives;
   std::optional<InclinometerOnBus> inclinometer;
   std::optional<GyroOnBus> gyro;
+  std::vector<OtherOnBus> others;
 };
 
 bool has_flippers(const RobotBus& bus);

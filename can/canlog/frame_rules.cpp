@@ -72,6 +72,7 @@ std::string FrameRules::strangeness(std::uint16_t cob_id, const Address& address
   if (address.service == Service::none) return "which CANopen does not assign";
   if (address.node != 0 && !network_.is_known(address.node))
     return fmt::format("of node {}, which the robot's description does not have", address.node);
+  if (address.node != 0 && network_.is_other(address.node)) return {};
   const bool is_pdo = address.service == Service::transmit_pdo || address.service == Service::receive_pdo;
   if (!is_pdo || setup_.pdo(cob_id) != nullptr) return {};
   return fmt::format("{}PDO{} of {}, which {}", address.service == Service::receive_pdo ? 'R' : 'T', address.pdo,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "can/canlog/lss.hpp"
 
 namespace kenaf::canlog {
@@ -62,6 +64,11 @@ Network::Network(const canbus::RobotBus& bus) : bus_(bus) {
     names_[bus.gyro->node] = "gyro";
     add({canopen::PdoDirection::transmit, bus.gyro->pdo, 1, {}}, bus.gyro->node, std::nullopt);
   }
+  for (const canbus::OtherOnBus& other : bus.others) names_[other.node] = other.name;
+}
+
+bool Network::is_other(NodeId node) const {
+  return std::ranges::find(bus_.others, node, &canbus::OtherOnBus::node) != bus_.others.end();
 }
 
 void Network::add(const Pdo& pdo, NodeId node, std::optional<std::size_t> drive) {

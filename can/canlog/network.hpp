@@ -49,6 +49,7 @@ class Network {
   const canbus::RobotBus& bus() const { return bus_; }
   bool is_known(canopen::NodeId node) const { return names_.contains(node); }
   bool is_master(canopen::NodeId node) const { return node == bus_.master; }
+  bool is_other(canopen::NodeId node) const;  // a device of somebody else, which [[can.other]] names
   // "flipper front left"; "node 9" for a node that the description does not know.
   std::string name(canopen::NodeId node) const;
   // Includes the master.

@@ -58,7 +58,7 @@ class Checker {
       const LogFrame& logged = log.frames[i];
       const Address address = address_of(logged.frame.id);
       const bool is_request = logged.kind == canopen::FrameKind::data && address.service == Service::sdo_request;
-      if (!is_request || logged.frame.length != canopen::kMaxFrameBytes) continue;
+      if (!is_request || network_.is_other(address.node) || logged.frame.length != canopen::kMaxFrameBytes) continue;
       findings_.add(logged, rule::sdo_in_loop, "an SDO for {} while the robot is driven", network_.name(address.node));
     }
   }

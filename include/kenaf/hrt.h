@@ -265,8 +265,8 @@ int hrt_set_tracks(double left_mmps, double right_mmps);
 /* Commands one flipper, or HRT_ALL_FLIPPERS, to an angle, -360 to 360 degrees: 0 straight out, positive tip up. The
  * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers. An angle
  * beyond the joint's range becomes the same direction within the range or, if there is none, the nearer end;
- * hrt_state.commanded_flipper_deg, recordings and hrt_wait_flippers use the requested angle. HRT_E_NOT_INITIALISED,
- * HRT_E_ARGUMENT, HRT_E_LINK. */
+ * hrt_state.commanded_flipper_deg, recordings and hrt_wait_flippers use the requested angle. A flipper that the robot
+ * has not is commanded in vain: HRT_OK, and nothing moves. HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
 int hrt_set_flipper(int flipper, double deg);
 
 /* Commands all four at once. */
@@ -336,7 +336,7 @@ typedef struct hrt_state {
   double track_mm[2];   /* travel of each track's surface since the robot was placed or switched on */
   double track_mmps[2]; /* and its speed */
   double track_a[2];    /* motor currents */
-  double flipper_deg[4];
+  double flipper_deg[4]; /* 0 for one that the robot has not */
   double flipper_a[4];
   double battery_v;
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "can/canbus/bus_layout.hpp"
 #include "can/canbus/robot_bus.hpp"
 #include "formats/description/description_error.hpp"
 
@@ -234,6 +235,17 @@ TEST_CASE("A side may have several drives, front first, each with its own direct
   std::string many = "[";
   for (int node = 20; node < 29; ++node) many += "{ node = " + std::to_string(node) + ", direction = 1 }, ";
   CHECK_THAT(error_of(left(many + "]")), Catch::Contains("lists 9 drives, but must list at most 8"));
+}
+
+TEST_CASE("Devices of others are named, with their traffic, and have no number that is the robot's") {
+  const std::string monitor = "\n[[can.other]]\nname = \"battery monitor\"\nnode = 20\nbits_per_s = 1500\n";
+  const RobotBus bus = parse_robot_bus(kenaf_toml() + monitor, "k.toml");
+  REQUIRE(bus.others.size() == 1);
+  CHECK(bus.others[0].name == "battery monitor");
+  CHECK(bus.others[0].node == 20);
+  CHECK(worst_case_bits_per_s(bus, 0.01) == Approx(worst_case_bits_per_s(load_robot_bus("kenaf"), 0.01) + 1500));
+  CHECK_THAT(error_of(kenaf_toml() + "\n[[can.other]]\nname = \"lamp\"\nnode = 6\n"),
+             Catch::Contains("has node 6 twice: flipper rear right and lamp"));
 }
 
 TEST_CASE("A robot that its ground cannot stop within 0.2 s says how long it takes") {

@@ -23,6 +23,16 @@ TEST_CASE("Identifiers: those of the predefined connection set, of nodes and PDO
   CHECK(broken({{0, "20000004#000C000000000000"}}).empty());  // of the driver, not of the bus
 }
 
+TEST_CASE("Devices of others that the description names are known, by their names") {
+  canbus::RobotBus bus = candrives::easy_robot();
+  bus.others.push_back({"battery monitor", 9, 0});
+  const Network network(bus);
+  // a heartbeat, a PDO that nobody here has set up, and an answer to its own master
+  const Log log = log_of({{0, "709#05"}, {1, "189#0102"}, {2, "289#01"}});
+  CHECK(check_rules(log, network).empty());
+  CHECK_THAT(Describer(network).describe(log.frames[0]), Catch::Contains("battery monitor"));
+}
+
 TEST_CASE("Lengths: each service has its own") {
   CHECK(broken({{0, "080#"}, {1, "080#01"}, {2, "181#370200000000"}, {3, "283#0000"}, {4, "187#00000000"}}).empty());
   CHECK(broken({{0, "000#01"},

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
-# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR ROBOT GAUGE_MM
+# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR ROBOT GAUGE_MM TIME_STEP_S
+#
+# TIME_STEP_S: of the physics behind the drives; an emulated machine may be too slow for the default, 0.001.
 #
 # The square example over libkenaf_sim, relay and world server; and over libkenaf_real, SocketCAN and kenaf-candrives, whose
 # drives turn the tracks of the same physics.
@@ -10,7 +12,7 @@ set -uo pipefail
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 . "$here/waiting.sh"
 with_vcan=$1 bin=$2
-export KENAF_ROBOT=$3 KENAF_TRACK_GAUGE_MM=$4
+export KENAF_ROBOT=$3 KENAF_TRACK_GAUGE_MM=$4 TIME_STEP_S=$5
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "square_test: $*" >&2; exit 1; }
@@ -25,7 +27,7 @@ cat >"$work/on_bus.sh" <<'END'
 results=$PWD; shift
 cd "$(mktemp -d)" || exit 1
 candump -L vcan0 >bus.log & listener=$!
-"$1/kenaf-candrives" --interface vcan0 --robot "$KENAF_ROBOT" --log real.csv >drives.log 2>&1 & drives=$!
+"$1/kenaf-candrives" --interface vcan0 --robot "$KENAF_ROBOT" --time-step "$TIME_STEP_S" --log real.csv >drives.log 2>&1 & drives=$!
 wait_until 30 holds drives.log 'nodes on vcan0'
 KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 "$1/square_real"; status=$?
 pause 1
