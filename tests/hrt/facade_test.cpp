@@ -126,6 +126,23 @@ TEST_CASE("Track speeds and flipper angles reach the transport in metres and rad
   }
 }
 
+TEST_CASE("Of a robot with front flippers, the rear ones are commanded in vain, are not waited for, and are 0") {
+  const auto robot = use_fake_robot();
+  for (const auto rear : {kenaf::robot::kRearLeft, kenaf::robot::kRearRight})
+    robot->plant.flipper_rad[rear] = robot->plant.state.flipper_rad[rear] = kenaf::robot::kNoFlipper;
+  const Open open;
+  REQUIRE(hrt_set_flipper(HRT_ALL_FLIPPERS, 30) == HRT_OK);
+  REQUIRE(hrt_wait_flippers(0.5, 10) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK((state.valid & HRT_HAS_FLIPPERS) != 0);
+  CHECK(state.flipper_deg[HRT_FRONT_RIGHT] == Approx(30).margin(0.5));
+  CHECK(state.flipper_deg[HRT_REAR_LEFT] == 0);
+  CHECK(state.flipper_deg[HRT_REAR_RIGHT] == 0);
+  CHECK(hrt_stop() == HRT_OK);
+  CHECK(hrt_show_status() == HRT_OK);
+}
+
 TEST_CASE("Sleeping counts robot time and takes whole cycles") {
   const auto robot = use_fake_robot();
   const Open open;
