@@ -131,7 +131,10 @@ void carry_out(Master& master, const NamedNode& node, const std::vector<SdoStep>
     const canopen::SdoWrite& what = step.what;
     const MappedObject object{what.object, what.type};
     if (step.kind == SdoStep::Kind::write) {
-      step.optional ? master.write_if_there(node, what) : master.write(node, what);
+      if (step.optional)
+        master.write_if_there(node, what);
+      else
+        master.write(node, what);
       continue;
     }
     const std::optional<std::int64_t> value =

@@ -21,9 +21,6 @@ using hrt::Error;
 
 constexpr double kCommandsOfGap = 3;
 
-MappedObject communication_object(const Pdo& command, std::uint8_t sub, ObjectType type) {
-  return {{static_cast<std::uint16_t>(0x1400 + command.number - 1), sub}, type};
-}
 std::optional<std::int64_t> read_event_timer(Master& master, const NamedNode& node, const Pdo& command) {
   const SdoWrite timer = canbus::read_of_event_timer(command).what;
   return master.read_if_there(node, {timer.object, timer.type});

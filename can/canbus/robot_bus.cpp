@@ -353,37 +353,39 @@ bool has_flippers(const RobotBus& bus) {
 std::size_t drives_of_side(const RobotBus& bus, robot::Track side) {
   return static_cast<std::size_t>(std::ranges::count_if(
       bus.drives, [side](const DriveOnBus& drive) { return !drive.is_flipper() && drive.side == side; }));
-  canopen::DriveMode first_mode(const DriveOnBus& drive) {
-    return drive.homing && drive.device.mode_change == ModeChange::disabled ? DriveMode::homing : drive.mode;
-  }
+}
 
-  int life_time_factor(const RobotBus& bus) {
-    return static_cast<int>(std::floor(bus.master_silence_s / bus.master_heartbeat_s + 1e-9));
-  }
+canopen::DriveMode first_mode(const DriveOnBus& drive) {
+  return drive.homing && drive.device.mode_change == ModeChange::disabled ? DriveMode::homing : drive.mode;
+}
 
-  double longest_stop_s(const RobotBus& bus) {
-    const DriveOnBus& track = bus.drives.front();
-    return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
-  }
+int life_time_factor(const RobotBus& bus) {
+  return static_cast<int>(std::floor(bus.master_silence_s / bus.master_heartbeat_s + 1e-9));
+}
 
-  std::int32_t position_to_drive(const DriveUnits& units, double position) {
-    return static_cast<std::int32_t>(std::lround(units.zero_counts + position * units.counts_per_unit));
-  }
+double longest_stop_s(const RobotBus& bus) {
+  const DriveOnBus& track = bus.drives.front();
+  return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
+}
 
-  double position_from_drive(const DriveUnits& units, std::int32_t counts) {
-    return (counts - units.zero_counts) / units.counts_per_unit;
-  }
+std::int32_t position_to_drive(const DriveUnits& units, double position) {
+  return static_cast<std::int32_t>(std::lround(units.zero_counts + position * units.counts_per_unit));
+}
 
-  std::int32_t velocity_to_drive(const DriveUnits& units, double velocity) {
-    return static_cast<std::int32_t>(std::lround(velocity * units.velocity_per_unit));
-  }
+double position_from_drive(const DriveUnits& units, std::int32_t counts) {
+  return (counts - units.zero_counts) / units.counts_per_unit;
+}
 
-  double velocity_from_drive(const DriveUnits& units, std::int32_t velocity) {
-    return velocity / units.velocity_per_unit;
-  }
+std::int32_t velocity_to_drive(const DriveUnits& units, double velocity) {
+  return static_cast<std::int32_t>(std::lround(velocity * units.velocity_per_unit));
+}
 
-  std::uint32_t acceleration_to_drive(const DriveUnits& units, double acceleration) {
-    return static_cast<std::uint32_t>(std::lround(acceleration * units.acceleration_per_unit));
-  }
+double velocity_from_drive(const DriveUnits& units, std::int32_t velocity) {
+  return velocity / units.velocity_per_unit;
+}
+
+std::uint32_t acceleration_to_drive(const DriveUnits& units, double acceleration) {
+  return static_cast<std::uint32_t>(std::lround(acceleration * units.acceleration_per_unit));
+}
 
 }  // namespace kenaf::canbus
