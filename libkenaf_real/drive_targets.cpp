@@ -22,7 +22,7 @@ void PositionRamp::step(double target, double max_speed, double acceleration, do
 }
 
 DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image)
-    : bus_(bus), track_mps_(bus.drives.size()) {
+    : bus_(bus), orders_(bus.drives.size()), track_mps_(bus.drives.size()) {
   for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const DriveOnBus& drive = bus.drives[i];
     if (!drive.is_flipper()) continue;
@@ -31,15 +31,13 @@ DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& imag
   }
 }
 
-DriveOrders DriveTargets::step(const robot::Command& command, const ProcessImage& image, double period_s) {
-  DriveOrders orders;
-  orders.reserve(bus_.drives.size());
+const DriveOrders& DriveTargets::step(const robot::Command& command, const ProcessImage& image, double period_s) {
   for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
     const DriveOnBus& drive = bus_.drives[i];
-    orders.push_back(drive.is_flipper() ? flipper(i, command.flipper[*drive.flipper], image.drive(i), period_s)
-                                        : track(i, command.track_speed_mps[drive.side], period_s));
+    orders_[i] = drive.is_flipper() ? flipper(i, command.flipper[*drive.flipper], image.drive(i), period_s)
+                                    : track(i, command.track_speed_mps[drive.side], period_s);
   }
-  return orders;
+  return orders_;
 }
 
 DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s) {

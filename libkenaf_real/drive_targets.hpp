@@ -27,13 +27,15 @@ class DriveTargets {
   // maximum; a flipper angle is taken to the same direction within the limits or, if there is none, to the nearer
   // limit. Ramps advance by one period per call, even if the previous call is longer ago: a drive reaches each target
   // within a period, and catching up would be a jump beyond the limits.
-  DriveOrders step(const robot::Command& command, const ProcessImage& image, double period_s);
+  // Valid until the next call; allocates nothing.
+  const DriveOrders& step(const robot::Command& command, const ProcessImage& image, double period_s);
 
  private:
   DriveOrder track(std::size_t drive, double speed_mps, double period_s);
   DriveOrder flipper(std::size_t drive, const robot::JointCommand& command, const DriveInput& input, double period_s);
 
   const canbus::RobotBus& bus_;
+  DriveOrders orders_;             // of the newest step
   std::vector<double> track_mps_;  // of each drive: the speed it was commanded last; flippers 0
   std::array<double, robot::kFlipperCount> hold_rad_{};
   std::array<PositionRamp, robot::kFlipperCount> ramps_{};
