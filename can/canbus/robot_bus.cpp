@@ -91,8 +91,19 @@ DriveOnBus read_drive(TomlReader& table, DriveOnBus drive) {
   return drive;
 }
 
+// 0x606C of 16 bits must hold the full speed, with some beyond it, since drives overshoot.
+void check_velocity(TomlReader& table, const DriveOnBus& drive) {
+  constexpr double kMost = std::numeric_limits<std::int16_t>::max();
+  const double full_speed = std::abs(drive.max_speed * drive.units.velocity_per_unit);
+  if (drive.device.velocity == VelocitySign::low_16_bits && 1.1 * full_speed > kMost)
+    table.fail("device", fmt::format("has velocities of 16 bits (velocity of {}), too few for the full speed, which is "
+                                     "{:.0f} by velocity_units_per_turn",
+                                     drive.device.name, full_speed));
+}
+
 // A flipper's counter must tell all of its range apart; a track's may wrap, but not within kWrapAtLeast_s.
 void check_counter(TomlReader& table, const DriveOnBus& drive) {
+  if (!is_position(drive.mode)) check_velocity(table, drive);
   const int bits = drive.device.position_bits;
   if (bits == 32) return;
   const double counts = std::ldexp(1, bits);
