@@ -87,14 +87,17 @@ def titled_paragraphs(text):
     return "".join(out)
 
 
+INLINE = r"(?:static \w*inline\w*|[A-Z]+_INLINE)"  # how a function that the header defines begins
+
+
 def parts_of(header):
     """The header from its first declaration on, as comments and declarations in their order."""
     start = header.index("/* The binary interface described")
     end = header.rindex("#if defined(__GNUC__)")
     rest = header[start:end]
     pattern = re.compile(
-        r"\s*(?:(?P<comment>/\*.*?\*/)(?=\s)|(?P<macro>#define[^\n]*)"
-        r"|(?P<block>(?:typedef struct|enum|static \w*inline\w*)\b[^;{]*\{.*?\n?\}[^;\n]*;?(?=\n))"
+        r"\s*(?:(?P<comment>/\*.*?\*/)(?=\s)|(?P<macro>#define[^\n]*)|(?P<conditional>#if.*?\n#endif[^\n]*)"
+        rf"|(?P<block>(?:typedef struct|enum|{INLINE})\b[^;{{]*\{{.*?\n?\}}[^;\n]*;?(?=\n))"
         r"|(?P<function>[a-z][^;{}]*\([^;{}]*\);))", re.S)
     position = 0
     while rest[position:].strip():
@@ -106,7 +109,7 @@ def parts_of(header):
 
 
 def prototype_of(inline_function):
-    return re.sub(r"^static \w+ |\s*\{.*", "", inline_function, flags=re.S) + ";"
+    return re.sub(rf"^{INLINE} |\s*\{{.*", "", inline_function, flags=re.S) + ";"
 
 
 def name_of(prototype):
@@ -119,6 +122,9 @@ def sections_of(header):
     for kind, text in parts_of(header):
         if kind == "comment":
             sections.append((bare(text), []))
+        elif kind == "conditional":  # with the comment before it: what compilers need, and no reader
+            if not sections[-1][1]:
+                sections.pop()
         else:
             sections[-1][1].append((kind, text))
     return sections
@@ -127,7 +133,7 @@ def sections_of(header):
 def hrt_page(header, version):
     sections = sections_of(header)
     inline = [prototype_of(text) for _, declared in sections for kind, text in declared
-              if kind == "block" and text.startswith("static ")]
+              if kind == "block" and re.match(INLINE, text)]
     functions = [text for _, declared in sections for kind, text in declared if kind == "function"] + inline
     intro = bare(header[: header.index("*/") + 2])
     title, intro = intro.split("\n", 1)
@@ -144,8 +150,8 @@ def hrt_page(header, version):
         if section:
             out.append(heading(section[1]))
             comment = section[2]
-        protos = [prototype_of(t) if t.startswith("static ") else t for _, t in declared
-                  if t.startswith("static ") or not re.match(r"#|enum|typedef", t)]
+        protos = [prototype_of(t) if re.match(INLINE, t) else t for _, t in declared
+                  if re.match(INLINE, t) or not re.match(r"#|enum|typedef", t)]
         types = [t for _, t in declared if re.match(r"#|enum|typedef", t)]
         if protos:
             out.append(".PP\n" + "".join(f".B {troff(one_line(p))}\n.br\n" for p in protos))
