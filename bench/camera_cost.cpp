@@ -5,6 +5,7 @@
 // Usage: camera_cost [pictures per camera and world, default 60] [world]... Status 1: a world's mean misses the limit.
 #include <fmt/format.h>
 #include <time.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,6 +15,8 @@
 #include "camera/jpeg.hpp"
 #include "camera/renderer.hpp"
 #include "camera/robot_cameras.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 
 using namespace kenaf;
 
@@ -83,14 +86,14 @@ std::vector<Cost> measure(const std::string& world_name, int pictures) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int pictures = argc > 1 ? std::atoi(argv[1]) : 60;
-  if (pictures < 1) {
-    fmt::print(stderr, "usage: camera_cost [pictures per camera and world, at least 1] [world]...\n");
-    return 2;
-  }
+  int pictures = 60;
+  std::vector<std::string> worlds;
+  CLI::App app{"Cost of the cameras' pictures, world by world", "camera_cost"};
+  app.add_option("pictures", pictures, "per camera and world")->check(kenaf::command_line::whole_number(1, 1'000'000));
+  app.add_option("worlds", worlds, "shipped names or SDF files");
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
 
   // A line for each camera, and their sum at the cameras' rate against the limit.
-  std::vector<std::string> worlds(argv + std::min(argc, 2), argv + argc);
   if (worlds.empty()) worlds = {"flat", "step-200", "stairs", "step-field", "hills", "rubble-mesh"};
   const physics::RobotDescription robot = physics::load_robot("kenaf");
   bool met = true;

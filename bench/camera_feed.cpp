@@ -13,6 +13,7 @@
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -28,6 +29,8 @@
 #include <thread>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "server/image_server/feed.hpp"
 #include "server/image_server/image_server.hpp"
 #include "server/world_server/manual_drive.hpp"
@@ -287,12 +290,13 @@ bool measure_physics(const std::string& world_name, int turns) {
 
 int main(int argc, char** argv) {
   spdlog::set_level(spdlog::level::warn);
-  const int seconds = argc > 1 ? std::atoi(argv[1]) : 20, turns = argc > 2 ? std::atoi(argv[2]) : 9;
-  const std::string world = argc > 3 ? argv[3] : "step-200";
-  if (seconds < 1 || turns < 1) {
-    fmt::print(stderr, "usage: camera_feed [seconds at speed 1, at least 1] [turns at speed 0, at least 1] [world]\n");
-    return 2;
-  }
+  int seconds = 20, turns = 9;
+  std::string world = "step-200";
+  CLI::App app{"What pictures of cameras cost a world server", "camera_feed"};
+  app.add_option("seconds", seconds, "at speed 1")->check(kenaf::command_line::whole_number(1, 86400));
+  app.add_option("turns", turns, "at speed 0")->check(kenaf::command_line::whole_number(1, 10000));
+  app.add_option("world", world, "a shipped name or an SDF file")->capture_default_str();
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   const bool pictures = measure_pictures(world, seconds), physics = measure_physics(world, turns);
   return pictures && physics ? 0 : 1;
 }

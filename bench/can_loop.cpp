@@ -18,6 +18,8 @@
 #include <string_view>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "kenaf/hrt.h"
 #include "tests/support/process.hpp"
 
@@ -43,18 +45,18 @@ int fail(const char* what, int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Jitter of libkenaf_real's cycles on a CAN bus"};
+  CLI::App app{"Jitter of libkenaf_real's cycles on a CAN bus", "can_loop"};
   std::string interface = "vcan0";
   int cycles = 1000;
   double period_s = 0.01;
   std::string robot = "kenaf";
   bool no_drives = false;
   app.add_option("--interface", interface)->capture_default_str();
-  app.add_option("--cycles", cycles)->capture_default_str()->check(CLI::Range(10, 1'000'000));
-  app.add_option("--period", period_s)->capture_default_str()->check(CLI::Range(0.001, 1.0));
+  app.add_option("--cycles", cycles)->capture_default_str()->check(kenaf::command_line::whole_number(10, 1'000'000));
+  app.add_option("--period", period_s)->capture_default_str()->check(kenaf::command_line::number_in(0.001, 1));
   app.add_option("--robot", robot)->capture_default_str();
   app.add_flag("--no-drives", no_drives);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
 
   // The drives on the bus, and the robot that runs on them.
   const kenaf::support::TemporaryFolder folder;

@@ -16,6 +16,8 @@
 #include <thread>
 
 #include "bench/relay_client.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "formats/protocol/usarsim_message.hpp"
 #include "tests/support/process.hpp"
 
@@ -104,12 +106,12 @@ class Tap {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Commands at 1 kHz through kenaf-relayd"};
+  CLI::App app{"Commands at 1 kHz through kenaf-relayd", "command_load"};
   int seconds = 60;
   std::string bin = KENAF_BIN_DIR;
-  app.add_option("--seconds", seconds, "How long");
+  app.add_option("--seconds", seconds, "How long")->check(kenaf::command_line::whole_number(1, 86400));
   app.add_option("--bin", bin, "Folder of kenaf-world and kenaf-relayd");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   try {
     // World server, tap, relay and a client of the relay whose states are read by a thread.
     const TemporaryFolder folder;

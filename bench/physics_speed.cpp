@@ -4,12 +4,15 @@
 // Usage: physics_speed [robot-seconds per scene, default 20]
 #include <fmt/format.h>
 #include <time.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "physics/world.hpp"
 
 using namespace kenaf;
@@ -73,11 +76,10 @@ void measure(const Case& scene, double time_s) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double time_s = argc > 1 ? std::strtod(argv[1], nullptr) : 20;
-  if (!(time_s > 0)) {
-    fmt::print(stderr, "usage: physics_speed [robot-seconds per scene, more than 0]\n");
-    return 2;
-  }
+  double time_s = 20;
+  CLI::App app{"Speed of the physics, a scene a line", "physics_speed"};
+  app.add_option("seconds", time_s, "robot-seconds per scene")->check(kenaf::command_line::number_in(0.001, 1e6));
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   fmt::print("{:<28} {:>10} {:>12} {:>14}\n", "scene", "steps/s", "real time x", "contacts/step");
   for (const Case& scene : {Case{"standing", "flat", 0, 0, 1, 1}, Case{"straight", "flat", 0.2, 0.2, 1, 1},
                             Case{"turning in place", "flat", -0.2, 0.2, 1, 1},

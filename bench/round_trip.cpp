@@ -26,6 +26,8 @@
 #include <vector>
 
 #include "bench/relay_client.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "formats/protocol/relay_datagram.hpp"
 #include "tests/support/process.hpp"
 
@@ -239,13 +241,14 @@ bool compare(const char* name, Measurement relay, Measurement forwarder, const s
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Round trips through kenaf-relayd compared with a bare UDP-to-TCP forwarder"};
+  CLI::App app{"Round trips through kenaf-relayd compared with a bare UDP-to-TCP forwarder", "round_trip"};
   int rounds = 8, count = 2000;
   std::string bin = KENAF_BIN_DIR;
-  app.add_option("--rounds", rounds, "Pairs of runs, relay and forwarder in turn");
-  app.add_option("--count", count, "Round trips a run");
+  app.add_option("--rounds", rounds, "Pairs of runs, relay and forwarder in turn")
+      ->check(kenaf::command_line::whole_number(1, 1000));
+  app.add_option("--count", count, "Round trips a run")->check(kenaf::command_line::whole_number(1, 1'000'000));
   app.add_option("--bin", bin, "Folder of kenaf-world and kenaf-relayd");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   try {
     fmt::print("exchange,figure,relay_us,forwarder_us,ratio,limit,within\n");
     const bool pings = compare("ping", pings_by_relay, pings_by_forwarder, bin, rounds, count);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <time.h>
+#include <CLI/CLI.hpp>
 
+#include "command_line/parse.hpp"
 #include "server/live/messages.hpp"
 #include "server/world_server/manual_drive.hpp"
 
@@ -27,7 +29,9 @@ double microseconds(int times, Work work) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  CLI::App app{"Cost of the live view's states", "view_cost"};
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   spdlog::set_level(spdlog::level::warn);
   fmt::print("robots  step/us  state/us  words/us  bytes  states at 30 Hz of one core\n");
   for (const int robots : {1, 8, 64}) {

@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "bench/relay_client.hpp"
+#include "command_line/parse.hpp"
 #include "tests/support/process.hpp"
 
 int main(int argc, char** argv) {
   using namespace kenaf;
-  CLI::App app{"Memory of kenaf-world with 16 robots"};
+  CLI::App app{"Memory of kenaf-world with 16 robots", "world_memory"};
   std::string bin = KENAF_BIN_DIR;
   app.add_option("--bin", bin, "Folder of kenaf-world");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   try {
     const support::TemporaryFolder folder;
     support::Process world({bin + "/kenaf-world", "--view", "off", "--cameras", "off", "--port", "0", "--port-file",

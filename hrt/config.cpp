@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -15,6 +14,8 @@
 #include <optional>
 #include <span>
 
+#include "formats/settings/nearest_word.hpp"
+#include "formats/settings/numbers.hpp"
 #include "hrt/error.hpp"
 
 namespace kenaf::hrt {
@@ -92,7 +93,7 @@ std::string set_text(const TextKey& key, std::string_view value, hrt_config& con
 std::string set_from_toml(std::string_view name, const toml::node& node, hrt_config& config) {
   for (const NumberKey& key : kNumberKeys) {
     if (name != key.name) continue;
-    if (!node.is_number()) return fmt::format("{} must be a number", name);
+    if (!node.is_number()) return fmt::format("{} must be a number from {} to {}", name, key.minimum, key.maximum);
     // not value<double>(), which rejects integers beyond 2^53
     const double value = node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
     return set_number(key, value, config);
@@ -108,15 +109,8 @@ std::string set_from_toml(std::string_view name, const toml::node& node, hrt_con
     if (!node.is_string()) return fmt::format("{} must be a string in quotes", name);
     return set_text(key, *node.value<std::string_view>(), config);
   }
-  return fmt::format("unknown key '{}'; the keys are the members of hrt_config in hrt.h", name);
-}
-
-template <typename Number>
-std::optional<Number> number_from(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return fmt::format("unknown key '{}'{}; the keys are the members of hrt_config in hrt.h", name,
+                     settings::did_you_mean(name, config_keys()));
 }
 
 std::optional<bool> flag_from(std::string_view text) {
@@ -137,10 +131,14 @@ std::string variable_name(const char* key) {
 }
 
 std::filesystem::path file_that_applies(const Environment& environment) {
-  if (const char* named = environment("KENAF_CONFIG"); named != nullptr && *named != '\0') return named;
+  const auto value_of = [&environment](const char* name) {
+    const auto found = environment.find(name);
+    return found == environment.end() ? std::string() : found->second;
+  };
+  if (const std::string named = value_of("KENAF_CONFIG"); !named.empty()) return named;
   std::error_code ignored;
   if (std::filesystem::exists("kenaf.toml", ignored)) return "kenaf.toml";
-  if (const char* home = environment("HOME"); home != nullptr && *home != '\0') {
+  if (const std::string home = value_of("HOME"); !home.empty()) {
     std::filesystem::path personal = std::filesystem::path(home) / ".config/kenaf/kenaf.toml";
     if (std::filesystem::exists(personal, ignored)) return personal;
   }
@@ -148,6 +146,14 @@ std::filesystem::path file_that_applies(const Environment& environment) {
 }
 
 }  // namespace
+
+std::vector<std::string> config_keys() {
+  std::vector<std::string> keys;
+  for (const NumberKey& key : kNumberKeys) keys.emplace_back(key.name);
+  for (const FlagKey& key : kFlagKeys) keys.emplace_back(key.name);
+  for (const TextKey& key : kTextKeys) keys.emplace_back(key.name);
+  return keys;
+}
 
 hrt_config default_config() {
   hrt_config config{};
@@ -194,25 +200,29 @@ void apply_environment(const Environment& environment, hrt_config& config) {
   // `changed` is a copy: a wrong variable leaves `config` as it was.
   hrt_config changed = config;
   const auto value_of = [&](const char* key) -> std::optional<std::string_view> {
-    const char* value = environment(variable_name(key).c_str());
-    return value == nullptr ? std::nullopt : std::optional<std::string_view>(value);
+    const auto found = environment.find(variable_name(key));
+    return found == environment.end() ? std::nullopt : std::optional<std::string_view>(found->second);
   };
   const auto check = [](const char* key, const std::string& wrong) {
     if (!wrong.empty())
       throw Error(HRT_E_CONFIG, fmt::format("environment variable {}: {}", variable_name(key), wrong));
   };
 
+  if (const std::string wrong = settings::wrong_variable(environment); !wrong.empty()) throw Error(HRT_E_CONFIG, wrong);
+
   // Each key by the type of its member; variables that are not set change nothing.
   for (const NumberKey& key : kNumberKeys) {
     if (const auto text = value_of(key.name)) {
-      const std::optional<double> value = number_from<double>(*text);
-      check(key.name, value ? set_number(key, *value, changed) : fmt::format("'{}' is not a number", *text));
+      const std::optional<double> value = settings::number_from(*text);
+      check(key.name, value ? set_number(key, *value, changed)
+                            : fmt::format("'{}' is not a number; {} must be from {} to {}", *text, key.name,
+                                          key.minimum, key.maximum));
     }
   }
   for (const FlagKey& key : kFlagKeys) {
     if (const auto text = value_of(key.name)) {
       const std::optional<bool> value = flag_from(*text);
-      check(key.name, value ? "" : fmt::format("'{}' is neither true nor false", *text));
+      check(key.name, value ? "" : fmt::format("'{}' is neither true nor false, 1 nor 0", *text));
       changed.*key.member = *value ? 1 : 0;
     }
   }

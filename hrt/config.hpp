@@ -4,10 +4,11 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "formats/settings/environment.hpp"
 #include "kenaf/hrt.h"
 
 namespace kenaf::hrt {
@@ -21,14 +22,14 @@ inline constexpr std::size_t kFirstConfigSize = offsetof(hrt_config, camera_serv
 // their defaults. Reads config.size bytes. Throws Error(HRT_E_ARGUMENT) if it was not made by hrt_config_default().
 hrt_config whole_config(const hrt_config& config);
 
-// Returns the value of an environment variable, or nullptr.
-using Environment = std::function<const char*(const char* name)>;
+using settings::Environment;
 
 // Overrides `config` from a TOML text. Throws Error(HRT_E_CONFIG) with "name:line:column: what is wrong" and then
 // leaves `config` unchanged.
 void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_config& config);
 
-// Overrides `config` from KENAF_<KEY> variables. Throws Error(HRT_E_CONFIG) naming the variable.
+// Overrides `config` from KENAF_<KEY> variables. Throws Error(HRT_E_CONFIG) naming the variable, also one whose name
+// begins with KENAF_ and is not known (formats/settings/environment.hpp).
 void apply_environment(const Environment& environment, hrt_config& config);
 
 // Applies the first file found of $KENAF_CONFIG, ./kenaf.toml and ~/.config/kenaf/kenaf.toml (none is no error), then
@@ -37,6 +38,9 @@ void load_config(const Environment& environment, hrt_config& config);
 
 // Throws Error(HRT_E_ARGUMENT) naming the member that is out of range. `config` must be complete.
 void check_config(const hrt_config& config);
+
+// The keys of the file, which are the members of hrt_config that a user may set.
+std::vector<std::string> config_keys();
 
 // Throws Error(`code`) naming members that are each in range but contradict each other.
 void check_together(const hrt_config& config, int code);

@@ -208,7 +208,7 @@ int hrt_config_load(hrt_config* config) {
     require(config != nullptr, "config is a null pointer");
     hrt_config whole = kenaf::hrt::whole_config(*config);
     kenaf::hrt::check_config(whole);
-    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, whole);
+    kenaf::hrt::load_config(kenaf::settings::own_environment(), whole);
     whole.size = config->size;
     std::memcpy(config, &whole, config->size);
   });
@@ -217,7 +217,7 @@ int hrt_config_load(hrt_config* config) {
 int hrt_kenaf_init(void) {
   return guarded([] {
     hrt_config config = kenaf::hrt::default_config();
-    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, config);
+    kenaf::hrt::load_config(kenaf::settings::own_environment(), config);
     open_with(config);
   });
 }

@@ -5,25 +5,21 @@
 #include <stdexcept>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
+
 namespace kenaf::relayd {
 
 namespace {
 
-// CLI11 takes a returned text as the error.
-template <class Parse>
-std::string words_of(Parse parse, const std::string& text) {
-  try {
-    parse(text);
-    return {};
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-}
+using command_line::readable_by;
+
+constexpr double kFarthest = 1e6;  // of --pose, m and rad: chosen
 
 // A name becomes part of a message whose words are separated by blanks, within braces.
-std::string check_name(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_of("{} \t\r\n") == std::string::npos;
-  return plain ? "" : "'" + text + "' is empty or contains blanks or braces";
+void require_name(const std::string& text) {
+  if (text.empty() || text.find_first_of("{} \t\r\n") != std::string::npos)
+    throw std::runtime_error("must be a word without blanks and braces");
 }
 
 }  // namespace
@@ -36,28 +32,29 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   RobotPlacement& placement = options.relay.placement;
 
   CLI::App app("Relays between a program on libkenaf_sim (UDP) and a USARSim world server (TCP).", "kenaf-relayd");
-  app.set_version_flag("--version", KENAF_VERSION);
   auto* server_option = app.add_option("--world-server", world_server, "the world server, HOST:PORT")
-                            ->check([](const std::string& text) { return words_of(parse_server, text); })
+                            ->check(readable_by(parse_server))
                             ->capture_default_str();
   app.add_option("--listen", listen, "address to listen on, ADDR:PORT; port 0: any free one")
-      ->check([](const std::string& text) { return words_of(parse_address, text); })
+      ->check(readable_by(parse_address))
       ->capture_default_str();
   app.add_option("--port-file", options.port_file, "write the port into this file");
   app.add_option("--class", placement.class_name, "the robot's USARSim class")
-      ->check(check_name)
+      ->check(readable_by(require_name))
       ->capture_default_str();
-  app.add_option("--name", placement.name, "the robot's name in the world")->check(check_name)->capture_default_str();
+  app.add_option("--name", placement.name, "the robot's name in the world")
+      ->check(readable_by(require_name))
+      ->capture_default_str();
   auto* start_option =
       app.add_option("--start", placement.start, "the start pose of the world to use (default: the server chooses)");
-  start_option->check(check_name);
+  start_option->check(readable_by(require_name));
   app.add_option("--pose", pose, "start pose instead: x,y,z,roll,pitch,yaw in metres and radians, z up")
       ->delimiter(',')
       ->expected(6)
+      ->check(command_line::number_in(-kFarthest, kFarthest))
       ->excludes(start_option);
   app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""))  // the word used in the log
+      ->transform(command_line::log_level())
       ->capture_default_str();
   bool is_embedded = false;
   auto* embedded_flag =
@@ -66,26 +63,24 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   app.add_option("--robot", embedded.robot, "robot of --embedded")->needs(embedded_flag)->capture_default_str();
   app.add_option("--speed", embedded.speed, "speed of --embedded, in multiples of real time; 0: as fast as possible")
       ->needs(embedded_flag)
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(command_line::number_in(0, 1e6))
       ->capture_default_str();
 
   std::string view_token, view = "127.0.0.1:8080";
   app.add_option("--view", view, "address of the live view of --embedded, ADDRESS:PORT, or off")
       ->needs(embedded_flag)
-      ->check([](const std::string& text) { return words_of(live::parse_view_options, text); })
+      ->check(readable_by(live::parse_view_options))
       ->capture_default_str();
   app.add_option("--view-token", view_token, "token that a browser must give; off loopback the default is a random one")
       ->needs(embedded_flag)
-      ->check([](const std::string& text) { return words_of(live::parse_view_token, text); });
+      ->check(readable_by(live::parse_view_token));
 
   std::string cameras = "on", camera_port = "5003", camera_image = "good";
   const auto camera_option = [&](const char* name, std::string& text,
                                  void (*set)(image_server::CameraOptions&, std::string_view), const char* what) {
     app.add_option(name, text, what)
         ->needs(embedded_flag)
-        ->check([&embedded, set](const std::string& given) {
-          return words_of([&](const std::string& words) { set(embedded.cameras, words); }, given);
-        })
+        ->check(readable_by([&embedded, set](const std::string& given) { set(embedded.cameras, given); }))
         ->capture_default_str();
   };
   camera_option("--cameras", cameras, image_server::set_cameras,
@@ -95,10 +90,8 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   camera_option("--camera-image", camera_image, image_server::set_camera_image,
                 "format of the pictures: raw, or JPEG of quality superb, good, normal, fair or bad");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    exit_status = app.exit(error) == 0 ? 0 : 2;
+  if (const auto status = command_line::parse(app, argc, argv)) {
+    exit_status = *status;
     return std::nullopt;
   }
   options.relay.world_server = parse_server(world_server);

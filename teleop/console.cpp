@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "desk.hpp"
 #include "gamepad.hpp"
 #include "link.hpp"
@@ -29,6 +31,7 @@
 namespace {
 
 using namespace kenaf::teleop;
+using kenaf::command_line::number_in;
 
 constexpr double kWishPeriod_s = 0.05;
 constexpr double kScreenPeriod_s = 0.1;
@@ -200,27 +203,24 @@ class Console {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("The operator's console: drives the robot through its control process, operator_control.");
+  CLI::App app("The operator's console: drives the robot through its control process, operator_control.",
+               "operator_console");
   app.add_option("--control", options.control, "address of the control process, HOST:PORT")->capture_default_str();
   app.add_option("--gamepad", options.gamepad,
                  "device of the gamepad, such as /dev/input/js1, or 'none'; default: the first one found");
   app.add_option("--camera", options.camera, "address of the camera's picture, shown on the screen");
   app.add_option("--speed", options.speed_mmps, "initial speed, mm/s")
-      ->check(CLI::Range(10.0, kMaxTrack_mmps))
+      ->check(number_in(10.0, kMaxTrack_mmps))
       ->capture_default_str();
   app.add_option("--script", options.script, "plays the operator's input from this file, without a terminal");
   app.add_flag("--plain", options.plain, "print one line per second instead of the screen; the keyboard is not read");
   app.add_option("--key-first", options.keys.first_s, "seconds for which a key drives after it was pressed")
-      ->check(CLI::Range(0.1, 2.0))
+      ->check(number_in(0.1, 2.0))
       ->capture_default_str();
   app.add_option("--key-repeat", options.keys.repeat_s, "seconds for which a key drives after each of its repeats")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(number_in(0.05, 1.0))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
 
   // Each of these signals only ends the loop, so that the terminal is restored and the robot is commanded to stop.
   struct sigaction action {};

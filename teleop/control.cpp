@@ -16,6 +16,8 @@
 #include <string>
 #include <utility>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "driving.hpp"
 #include "formats/protocol/log_limiter.hpp"
 #include "formats/runs/port_file.hpp"
@@ -27,6 +29,7 @@
 namespace {
 
 using namespace kenaf::teleop;
+using kenaf::command_line::number_in;
 
 constexpr int kTurn_ms = 10;  // loop period: one cycle of the robot
 constexpr double kStatusPeriod_s = 0.05;
@@ -206,33 +209,32 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app(
       "Drives the robot by the commands of the operator's console. kenaf.toml and the KENAF_... variables choose the "
-      "robot.");
+      "robot.",
+      "operator_control");
   app.add_option("--listen", options.listen, "address to listen on, ADDR:PORT; port 0: any free one")
       ->capture_default_str();
   app.add_option("--port-file", options.port_file, "write the port into this file");
   app.add_option("--silence", options.limits.silence_s, "seconds of silence of the console after which the robot halts")
-      ->check(CLI::Range(0.1, 10.0))
+      ->check(number_in(0.1, 10.0))
       ->capture_default_str();
   app.add_option("--view", options.limits.view_s, "seconds; a command based on an older view of the robot halts it")
-      ->check(CLI::Range(0.2, 60.0))
+      ->check(number_in(0.2, 60.0))
       ->capture_default_str();
   app.add_option("--takeover", options.takeover_s, "seconds of silence after which another console may have the robot")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(number_in(0.1, 3600.0))
       ->capture_default_str();
   app.add_option("--max-speed", options.limits.max_track_mmps, "of the tracks, mm/s")
-      ->check(CLI::Range(1.0, kMaxTrack_mmps))
+      ->check(number_in(1.0, kMaxTrack_mmps))
       ->capture_default_str();
   app.add_option("--speed-up", options.limits.speed_up_mmps2, "ramp of the tracks, mm/s^2")
-      ->check(CLI::Range(10.0, 1e5))
+      ->check(number_in(10.0, 1e5))
       ->capture_default_str();
   app.add_option("--slow-down", options.limits.slow_down_mmps2, "ramp of the tracks, mm/s^2")
-      ->check(CLI::Range(10.0, 1e5))
+      ->check(number_in(10.0, 1e5))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
+  hrt_config config = hrt_config_default();
+  if (hrt_config_load(&config) != HRT_OK) return kenaf::command_line::wrong_use(app, hrt_last_error());
 
   // A signal only ends the loop: the robot is then stopped and closed as usual.
   struct sigaction action {};
@@ -241,8 +243,6 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
 
   try {
-    hrt_config config = hrt_config_default();
-    if (hrt_config_load(&config) != HRT_OK) throw std::runtime_error(hrt_last_error());
     Control control(options, config);
     fmt::print(stderr, "operator_control: {} library, listening on port {}\n", hrt_library(), control.port());
     if (!options.port_file.empty()) kenaf::runs::write_port_file(options.port_file, control.port());

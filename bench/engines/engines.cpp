@@ -12,6 +12,8 @@
 #include "bench/engines/accuracy.hpp"
 #include "bench/engines/machine.hpp"
 #include "bench/engines/speed.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 
 using namespace kenaf::bench;
 using namespace kenaf::engines;
@@ -120,13 +122,13 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Compares Kenaf's physics with MuJoCo's and ODE's");
+  CLI::App app("Compares Kenaf's physics with MuJoCo's and ODE's", "engines");
   std::string csv;
   int repeats = 3;
   app.add_option("--csv", csv, "also write the results to this file");
   app.add_option("--repeats", repeats, "of each scene with each engine; medians are reported")
-      ->check(CLI::Range(1, 1000));
-  CLI11_PARSE(app, argc, argv);
+      ->check(kenaf::command_line::whole_number(1, 1000));
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
 
   // Kenaf's engines first: they are the reference.
   const Machine machine = this_machine();

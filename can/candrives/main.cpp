@@ -12,6 +12,8 @@
 #include "can/canbus/socket_bus.hpp"
 #include "can/candrives/motors.hpp"
 #include "can/candrives/service.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 
 namespace {
 
@@ -52,16 +54,13 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
       "The drives, inclinometer and gyro of a robot as CANopen slaves (CiA 402, CiA 410) on a CAN interface.\n"
       "Their motors turn the tracks and flippers of a simulated robot. See docs/can-tools.md.",
       "kenaf-candrives");
-  app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
   app.add_option("--robot", options.motors.robot, "Robot: a shipped name or a TOML file with a [can] table")
       ->capture_default_str();
   candrives::add_motor_options(app, options.motors);
   app.add_option("--fault", options.faults, kFaultHelp)->take_all();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    exit_status = app.exit(error) == 0 ? 0 : 2;
+  if (const auto status = command_line::parse(app, argc, argv)) {
+    exit_status = *status;
     return std::nullopt;
   }
   return options;

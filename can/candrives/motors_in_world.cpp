@@ -2,6 +2,7 @@
 #include "can/candrives/motors.hpp"
 #include "can/candrives/path_log.hpp"
 #include "can/candrives/robot_plant.hpp"
+#include "command_line/checks.hpp"
 
 namespace kenaf::candrives {
 
@@ -15,7 +16,7 @@ void add_motor_options(CLI::App& app, MotorOptions& options) {
   app.add_option("--time-step", options.time_step_s,
                  "Physics time step in seconds; larger ones need less processor time")
       ->capture_default_str()
-      ->check(CLI::Range(0.0001, 0.01))
+      ->check(command_line::number_in(0.0001, 0.01))
       ->excludes(ideal);
   app.add_option("--log", options.log, "Write the true position of the robot to this CSV file, a line every 10 ms")
       ->excludes(ideal);

@@ -22,6 +22,8 @@
 #include "can/canlog/log.hpp"
 #include "can/canlog/print_limit.hpp"
 #include "can/canlog/rules.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 
 namespace {
 
@@ -134,7 +136,6 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("Decodes a CAN bus log, checks it against the rules of CANopen and reports statistics.", "kenaf-canlog");
-  app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("LOG", options.log, "a log of candump, PCAN-View, CANoe or python-can; - is standard input")
       ->capture_default_str();
   app.add_option("--robot", options.robot, "the robot description with the devices on the bus, a name or a TOML file")
@@ -144,21 +145,16 @@ int main(int argc, char** argv) {
   app.add_flag("--check", options.check, "lists every violation; exit status 1 if there is one");
   app.add_option("--sync-window", options.sync_window_ms,
                  "--check: ms after SYNC in which nodes must answer (default: object 0x1007 as it was written)")
-      ->check(CLI::PositiveNumber);
+      ->check(command_line::number_in(1e-3, 1e6));
   app.add_option("--answer", options.answer_ms,
                  "--check: ms in which SDO requests must be answered (default: the description's answer_s)")
-      ->check(CLI::PositiveNumber);
+      ->check(command_line::number_in(1e-3, 1e6));
   app.add_flag("--all", options.all, "prints every error, not 20 of a kind at most");
   app.add_flag("--figures", options.figures, "load, SYNC's jitter, times of answers and commands");
   app.add_option("--bitrate", options.bit_rate, "--figures: of the bus, in bit/s")
-      ->check(CLI::Range(10'000.0, 1'000'000.0))
+      ->check(command_line::number_in(10'000, 1'000'000))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int status = app.exit(error);
-    return status == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = command_line::parse(app, argc, argv)) return *status;
   try {
     return run(options);
   } catch (const std::exception& error) {

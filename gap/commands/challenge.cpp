@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line/checks.hpp"
 #include "formats/runs/whole_file.hpp"
 #include "gap/challenge/confinement.hpp"
 #include "gap/challenge/diagnose_cases.hpp"
@@ -29,7 +30,6 @@
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/commands/interrupt.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/commands/progress_line.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
@@ -271,6 +271,13 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   return diagnosed;
 }
 
+CLI::Validator engine_check(const std::vector<std::string>& engines) {
+  if (!engines.empty()) return command_line::one_of(engines);
+  return command_line::readable_by([](const std::string&) {
+    throw std::runtime_error("must not be given: kenaf-gap was built without MuJoCo and ODE");
+  });
+}
+
 }  // namespace
 
 void add_challenge_command(CLI::App& program) {
@@ -279,9 +286,11 @@ void add_challenge_command(CLI::App& program) {
       "challenge", "diagnoses cases with hidden effects, whose key stays sealed until all are diagnosed");
   command->add_option("--out", options->out, "folder for the cases, their reports and the key; required")
       ->type_name("DIR");
-  command->add_option("--cases", options->cases, "how many")->check(whole_number(kMostCases))->capture_default_str();
+  command->add_option("--cases", options->cases, "how many")
+      ->check(command_line::whole_number(1, kMostCases))
+      ->capture_default_str();
   command->add_option("--seed", options->seed, "seed of all random numbers, to repeat or continue a challenge [random]")
-      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()));
+      ->check(command_line::whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   command->add_flag("--imperfect", options->imperfect,
                     "realistic cases: every number of the robot has a small error, runs are short and few");
   const std::vector<std::string> engines = engines::engine_names();
@@ -291,17 +300,13 @@ void add_challenge_command(CLI::App& program) {
       ->add_option("--engine", options->engine,
                    fmt::format("like --imperfect, and another physics engine moves the robots ({})", built_with))
       ->type_name("NAME")
-      ->check([engines, built_with](const std::string& name) {
-        return std::ranges::count(engines, name) > 0 ? std::string()
-                                                     : fmt::format("no engine \"{}\" ({})", name, built_with);
-      });
+      ->check(engine_check(engines));
   command->add_option("--jobs", options->jobs, "parallel cases; 0: one per core")
-      ->check(whole_number(kMostJobs))
+      ->check(command_line::whole_number(0, command_line::kMostJobs))
       ->capture_default_str();
 
   command->callback([options] {
     if (options->out.empty()) throw CLI::RequiredError("--out");
-    if (options->cases == 0) throw CLI::ValidationError("--cases", "--cases must be at least 1");
 
     check_folder(options->out, options->seed.has_value());
     ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/compare/report.hpp"
 
 namespace kenaf::gap::commands {
@@ -28,12 +28,12 @@ void add_compare_command(CLI::App& program) {
       "--no-align-start", [options] { options->compare.align_start = false; },
       "keep the recorded starts; otherwise each simulated run is moved to the start of its real run, in x, y and yaw");
   command->add_option("--start", options->compare.start_s, "average the start over this time; 0: the first frame [0]")
-      ->check(number_in(0, 1e6))
+      ->check(command_line::number_in(0, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--band", options->compare.band_s,
                    "largest deviation of matched frames from uniform time, in seconds")
-      ->check(number_in(1e-3, 1e9))
+      ->check(command_line::number_in(1e-3, 1e9))
       ->type_name("SECONDS");
 
   command->callback([options] {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/datasets/collect.hpp"
 
@@ -46,7 +47,7 @@ void add_dataset_command(CLI::App& program) {
   command->add_option("--robot", request.robot, "a shipped name or a TOML file [kenaf, or the dataset's]");
   command->add_option("--world", request.world, "a shipped name or an SDF file [each shipped manoeuvre's own]");
   command->add_option("--source", request.source, "real or sim")
-      ->check(CLI::IsMember({"real", "sim"}))
+      ->check(command_line::one_of({"real", "sim"}))
       ->type_name("SOURCE")
       ->capture_default_str();
   command->add_option("--description", request.description, "free text, for a new dataset");

@@ -5,9 +5,9 @@
 #include <limits>
 #include <memory>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/commands/interrupt.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/commands/progress_line.hpp"
 #include "gap/commands/report_curves.hpp"
 #include "gap/datasets/dataset_files.hpp"
@@ -52,10 +52,10 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       "--no-next", [&diagnosis] { diagnosis.propose_next = false; },
       "do not propose the next manoeuvre, which needs further simulations");
   command->add_option("--jobs", diagnosis.jobs, "threads; 0: one per core")
-      ->check(whole_number(kMostJobs))
+      ->check(command_line::whole_number(0, command_line::kMostJobs))
       ->capture_default_str();
   command->add_option("--seed", diagnosis.seed, "of resampling")
-      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+      ->check(command_line::whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
 
   command->callback([options] {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
+#include "command_line/checks.hpp"
 #include "formats/runs/whole_file.hpp"
 #include "gap/commands/commands.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/commands/progress_line.hpp"
 #include "gap/logs/plausibility.hpp"
 #include "gap/recordings/guess.hpp"
@@ -186,10 +186,10 @@ void add_import_command(CLI::App& program) {
       ->type_name("FILE");
   command
       ->add_option("--from", options->from_s, "leave out what was recorded before, since the first message [the begin]")
-      ->check(number_in(0, kMostSeconds))
+      ->check(command_line::number_in(0, kMostSeconds))
       ->type_name("SECONDS");
   command->add_option("--to", options->to_s, "leave out what was recorded after [the end]")
-      ->check(number_in(0, kMostSeconds))
+      ->check(command_line::number_in(0, kMostSeconds))
       ->type_name("SECONDS");
   command->add_flag("--force", options->force, "replace the output file if it exists");
 

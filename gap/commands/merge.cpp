@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/logs/capture_up.hpp"
 #include "gap/logs/merge_pose.hpp"
 #include "gap/logs/wrapped_travel.hpp"
@@ -80,33 +80,33 @@ void add_merge_command(CLI::App& program) {
   command->add_option("MOCAP", options->capture, "the motion capture, a CSV file; required")->type_name("");
   command->add_option("--out", options->out, "the CSV file to write; required")->type_name("FILE");
   command->add_option("--mocap-units", options->units, "unit of x_m, y_m and z_m in MOCAP: m or mm")
-      ->check(CLI::IsMember({"m", "mm"}))
+      ->check(command_line::one_of({"m", "mm"}))
       ->type_name("UNIT")
       ->capture_default_str();
   command->add_option("--up", options->up, "axis of MOCAP that points up: z, y, -y or -z [z, unless another is seen]")
-      ->check(CLI::IsMember({"z", "y", "-y", "-z"}))
+      ->check(command_line::one_of({"z", "y", "-y", "-z"}))
       ->type_name("AXIS");
   command->add_flag("--keep-frame", options->merge.keep_frame,
                     "keep the frame of the motion capture; otherwise the first pose is the origin, x forward");
   command->add_option("--start", options->merge.start_s, "average the first pose over this time; 0: the first row [0]")
-      ->check(number_in(0, 1e6))
+      ->check(command_line::number_in(0, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--max-gap", options->merge.max_gap_s,
                    "longest gap between captured poses to interpolate over [2.5 times their median step]")
-      ->check(number_in(1e-6, 1e6))
+      ->check(command_line::number_in(1e-6, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--offset", options->merge.offset_s,
                    "run time minus motion capture time at the run's first row, if known; otherwise it is estimated")
-      ->check(number_in(-1e12, 1e12))
+      ->check(command_line::number_in(-1e12, 1e12))
       ->type_name("SECONDS");
   command
       ->add_option_function<double>(
           "--drift", [options](double ppm) { options->merge.drift = 1e-6 * ppm; },
           "growth of the offset in millionths, if known; 0: clocks of the same speed; otherwise it is estimated, or 0 "
           "with --offset")
-      ->check(number_in(-1e5, 1e5))
+      ->check(command_line::number_in(-1e5, 1e5))
       ->type_name("PPM");
   command->add_flag("--unwrap", options->unwrap, "write the travel of tracks whose counter wraps without its jumps");
   command->add_flag("--force", options->force, "replace the output file if it exists");

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/playback/playback_server.hpp"
 #include "server/live/view_options.hpp"
@@ -50,18 +51,22 @@ void add_play_command(CLI::App& program) {
   command->add_option("--world", request.world, "a shipped name or an SDF file [each run's own, or flat]");
   command->add_option("--view", options->view, "address of the page, ADDRESS:PORT; port 0: any free one")
       ->type_name("ADDRESS:PORT")
+      ->check(command_line::readable_by([](const std::string& text) {
+        if (!live::parse_view_options(text).on)
+          throw std::runtime_error("must be ADDRESS:PORT: off leaves nothing to do");
+      }))
       ->capture_default_str();
   command
       ->add_option("--view-token", options->token,
                    "token that a browser must give; off loopback the default is a random one")
-      ->type_name("TOKEN");
+      ->type_name("TOKEN")
+      ->check(command_line::readable_by([](const std::string& text) { (void)live::parse_view_token(text); }));
 
   command->callback([options] {
     if (options->request.runs.empty()) throw CLI::RequiredError("RUNS");
 
     live::ViewOptions view = live::parse_view_options(options->view);
-    if (!view.on) throw std::invalid_argument("--view off leaves nothing to do; give ADDRESS:PORT");
-    view.token = live::parse_view_token(options->token);
+    view.token = options->token;
     playback::Playback playback = playback::load_playback(options->request);
     for (const std::string& note : playback.notes) std::fprintf(stderr, "kenaf-gap: %s\n", note.c_str());
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 
+#include "command_line/checks.hpp"
 #include "formats/runs/whole_file.hpp"
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/make_case.hpp"
@@ -14,7 +15,6 @@
 #include "gap/challenge/sealed_data.hpp"
 #include "gap/challenge/temporary_folder.hpp"
 #include "gap/commands/commands.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/commands/progress_line.hpp"
 #include "gap/datasets/dataset_files.hpp"
 #include "gap/parallel.hpp"
@@ -69,7 +69,7 @@ void add_score_command(CLI::App& program) {
   command->add_option("DIR", options->folder, "the folder of a finished challenge; required")->type_name("");
   command->add_flag("!--no-shrinks", options->shrinks, "leave out the figures that need simulations");
   command->add_option("--jobs", options->jobs, "threads; 0: one per core")
-      ->check(whole_number(kMostJobs))
+      ->check(command_line::whole_number(0, command_line::kMostJobs))
       ->capture_default_str();
 
   command->callback([options] {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
-#include "gap/commands/option_checks.hpp"
 #include "gap/datasets/physics_settings.hpp"
 #include "gap/datasets/simulate.hpp"
 
@@ -69,21 +69,21 @@ void add_simulate_command(CLI::App& program) {
                                     "time_step_s, solver_iterations, contact_stiffness_npm or contact_damping_nspm"),
                 "KEY=VALUE");
   command->add_option("--repeats", request.repeats, "runs of each manoeuvre")
-      ->check(whole_number(kMostRepeats))
+      ->check(command_line::whole_number(0, kMostRepeats))
       ->capture_default_str();
   command->add_option("--noise", request.noise_scale, "factor of the noise of all sensors; 0: none")
-      ->check(number_in(0, datasets::kLargestScale))
+      ->check(command_line::number_in(0, datasets::kLargestScale))
       ->capture_default_str();
   command
       ->add_option("--scatter", request.scatter_scale,
                    "factor of the scatter of start poses; 1: 5 mm in x and y, 0.01 rad in yaw; 0: none")
-      ->check(number_in(0, datasets::kLargestScale))
+      ->check(command_line::number_in(0, datasets::kLargestScale))
       ->capture_default_str();
   command->add_option("--seed", request.seed, "seed of noise and scatter")
-      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+      ->check(command_line::whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
   command->add_option("--jobs", request.jobs, "threads; 0: one per core")
-      ->check(whole_number(kMostJobs))
+      ->check(command_line::whole_number(0, command_line::kMostJobs))
       ->capture_default_str();
   command->add_option("--out", request.out, "folder of the dataset, which must be empty or absent; required")
       ->type_name("DIR");

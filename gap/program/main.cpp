@@ -6,13 +6,12 @@
 //
 // Exit status: 0 done; 1 done except for runs whose simulation went wrong; 2 bad input, or the output cannot be
 // written, with the error and its place on standard error.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
 
+#include "command_line/parse.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/commands/progress_line.hpp"
 #include "gap/ranks.hpp"
@@ -37,12 +36,6 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::commands::add_simulate_command,
 };
 
-std::string in_words(const CLI::App* program, const CLI::Error& error) {
-  std::string command = program->get_name();
-  for (const CLI::App* sub : program->get_subcommands()) command += " " + sub->get_name();
-  return fmt::format("kenaf-gap: {}\n{} --help lists the commands and options\n", error.what(), command);
-}
-
 // Throws if the output could not be written, as on a full disk.
 void finish_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
@@ -53,16 +46,11 @@ void finish_output() {
 
 int main(int argc, char** argv) {
   CLI::App program{"Measures the gap between simulation and reality, and names its causes.", "kenaf-gap"};
-  program.set_version_flag("--version", KENAF_VERSION);
-  program.failure_message(in_words);
-  program.require_subcommand(0, 1);  // checked below, since CLI11 would not name an unknown word
+  program.require_subcommand(1);
   for (const auto add : kCommands) add(program);
   try {
-    program.parse(argc, argv);
-    if (program.get_subcommands().empty()) throw CLI::RequiredError("a subcommand");
+    if (const auto status = kenaf::command_line::parse(program, argc, argv)) return *status;
     finish_output();
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : kBadInput;
   } catch (const kenaf::gap::commands::RunsWentWrong& error) {
     kenaf::gap::commands::clear_progress_line();
     std::fprintf(stderr, "kenaf-gap: %s\n", error.what());

@@ -4,7 +4,6 @@
 //
 // Every machine needs the dataset, the shipped data and the same build. The first process writes the reports. The exit
 // status is that of kenaf-gap.
-#include <fmt/format.h>
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
@@ -13,11 +12,13 @@
 #include <exception>
 #include <string_view>
 
+#include "command_line/parse.hpp"
 #include "gap/commands/commands.hpp"
 #include "gap/ranks.hpp"
 
 namespace {
 
+namespace command_line = kenaf::command_line;
 using kenaf::gap::Ranks;
 
 constexpr int kBadInput = 2;
@@ -62,15 +63,13 @@ bool any(bool mine) {
 
 int run(int argc, char** argv, const Ranks& ranks) {
   CLI::App program{"Diagnoses with several processes, started with mpirun", "kenaf-gap-mpi"};
-  program.set_version_flag("--version", KENAF_VERSION);
   program.require_subcommand(1);
   kenaf::gap::commands::add_diagnose_command(program, ranks);
   try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    // All ranks have the same arguments; only one prints the error.
-    if (ranks.rank > 0) return error.get_exit_code() == 0 ? 0 : kBadInput;
-    return program.exit(error) == 0 ? 0 : kBadInput;
+    // All ranks have the same arguments; only one prints what is wrong.
+    using command_line::Speaks;
+    const auto status = command_line::parse(program, argc, argv, ranks.rank > 0 ? Speaks::no : Speaks::yes);
+    if (status) return *status;
   } catch (const std::exception& error) {
     // An error may concern one rank only: a machine without the dataset, a full disk.
     std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", ranks.rank, ranks.count, error.what());

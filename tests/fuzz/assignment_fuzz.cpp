@@ -1,12 +1,12 @@
 // Any text is an effect's or a physics setting's assignment, within its range, or is refused with an invalid_argument.
-// An option's text that passes its check is the number that it reads as.
+// A number of an option or a variable is what other readers read, or is refused.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "gap/commands/option_checks.hpp"
+#include "formats/settings/numbers.hpp"
 #include "gap/datasets/physics_settings.hpp"
 #include "physics/effects.hpp"
 
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   check_effect(text);
   check_physics(text);
-  if (gap::commands::whole_number(1000)(text).empty() && std::to_string(std::stoul(text)) != text) __builtin_trap();
-  if (gap::commands::number_in(0, 1)(text).empty() && !(std::stod(text) >= 0 && std::stod(text) <= 1)) __builtin_trap();
+  if (const auto whole = settings::whole_number_from(text); whole && std::to_string(*whole) != text) __builtin_trap();
+  if (const auto number = settings::number_from(text); number && *number != std::stod(text)) __builtin_trap();
   return 0;
 }

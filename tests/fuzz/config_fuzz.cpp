@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -37,8 +36,8 @@ void read_as_file(std::string_view text) {
 }
 
 // Lines of NAME=VALUE.
-std::map<std::string, std::string> variables_of(std::string_view text) {
-  std::map<std::string, std::string> variables;
+settings::Environment variables_of(std::string_view text) {
+  settings::Environment variables;
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
@@ -49,15 +48,9 @@ std::map<std::string, std::string> variables_of(std::string_view text) {
 }
 
 void read_as_environment(std::string_view text) {
-  const std::map<std::string, std::string> variables = variables_of(text);
   hrt_config config = hrt::default_config();
   try {
-    hrt::apply_environment(
-        [&](const char* name) {
-          const auto found = variables.find(name);
-          return found == variables.end() ? nullptr : found->second.c_str();
-        },
-        config);
+    hrt::apply_environment(variables_of(text), config);
   } catch (const hrt::Error& error) {
     check(error.code() == HRT_E_CONFIG && std::string_view(error.what()).starts_with("environment variable KENAF_"));
     check(same(config, hrt::default_config()));

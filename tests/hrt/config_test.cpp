@@ -31,17 +31,14 @@ std::string toml_error(std::string_view text) {
   return "";
 }
 
-Environment environment_of(std::map<std::string, std::string> variables) {
-  return [variables = std::move(variables)](const char* name) -> const char* {
-    const auto found = variables.find(name);
-    return found == variables.end() ? nullptr : found->second.c_str();
-  };
+Environment environment_of(const std::map<std::string, std::string>& variables) {
+  return {variables.begin(), variables.end()};
 }
 
-std::string environment_error(std::map<std::string, std::string> variables) {
+std::string environment_error(const std::map<std::string, std::string>& variables) {
   hrt_config config = default_config();
   try {
-    apply_environment(environment_of(std::move(variables)), config);
+    apply_environment(environment_of(variables), config);
   } catch (const Error& error) {
     CHECK(error.code() == HRT_E_CONFIG);
     return error.what();

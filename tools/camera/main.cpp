@@ -13,6 +13,8 @@
 
 #include "camera/renderer.hpp"
 #include "camera/robot_cameras.hpp"
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "formats/runs/whole_file.hpp"
 
 namespace {
@@ -87,21 +89,27 @@ void make_picture(const Options& options) {
 int main(int argc, char** argv) {
   // Options, then the picture; status 2 if it cannot be made.
   Options options;
-  CLI::App app{"Writes the picture of a robot's camera."};
+  CLI::App app{"Writes the picture of a robot's camera.", "camera_picture"};
+  const CLI::Validator coordinate = command_line::number_in(-1e4, 1e4), angle = command_line::number_in(-10, 10);
   app.add_option("--robot", options.robot, "robot description")->capture_default_str();
   app.add_option("--world", options.world, "world")->capture_default_str();
   app.add_option("--camera", options.camera, "the camera's name")->capture_default_str();
   app.add_option("--out", options.out, "the picture, a PNG file")->required();
-  app.add_option("--at", options.at, "the robot's x, y in m and yaw in rad")->expected(3);
-  app.add_option("--eye", options.eye, "look from x, y, z in m with pitch and yaw in rad instead")->expected(5);
-  app.add_option("--pan", options.pan_rad, "link 1 of the first mission package, rad");
-  app.add_option("--tilt", options.tilt_rad, "its link 2, rad");
-  app.add_option("--field-of-view", options.field_of_view_rad, "rad [the camera's]");
-  app.add_option("--flippers", options.flippers_rad, "all four, rad")->capture_default_str();
-  app.add_option("--speed", options.track_mps, "of both tracks, m/s");
-  app.add_option("--seconds", options.seconds, "duration of the drive, or of the rest")->capture_default_str();
+  app.add_option("--at", options.at, "the robot's x, y in m and yaw in rad")->expected(3)->check(coordinate);
+  app.add_option("--eye", options.eye, "look from x, y, z in m with pitch and yaw in rad instead")
+      ->expected(5)
+      ->check(coordinate);
+  app.add_option("--pan", options.pan_rad, "link 1 of the first mission package, rad")->check(angle);
+  app.add_option("--tilt", options.tilt_rad, "its link 2, rad")->check(angle);
+  app.add_option("--field-of-view", options.field_of_view_rad, "rad [the camera's]")
+      ->check(command_line::number_in(0.01, 3.1));
+  app.add_option("--flippers", options.flippers_rad, "all four, rad")->check(angle)->capture_default_str();
+  app.add_option("--speed", options.track_mps, "of both tracks, m/s")->check(command_line::number_in(-10, 10));
+  app.add_option("--seconds", options.seconds, "duration of the drive, or of the rest")
+      ->check(command_line::number_in(0, 3600))
+      ->capture_default_str();
   app.add_flag("--every-pixel", options.every_pixel, "a ray through each pixel");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = command_line::parse(app, argc, argv)) return *status;
   try {
     make_picture(options);
   } catch (const std::exception& error) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "formats/runs/whole_file.hpp"
 #include "physics/robot_description.hpp"
 #include "tools/describe/from_urdf.hpp"
@@ -41,9 +43,14 @@ void write_result(const std::string& out, const std::string& text) {
     throw std::runtime_error("standard output cannot be written");
 }
 
+// Throws std::runtime_error if the text is not A=B.
+void require_assignment(const std::string& text, const char* form) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) throw std::runtime_error(std::string("must be ") + form);
+}
+
 void take_package(const std::string& text, describe::MeshFolders& folders) {
   const std::size_t equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos) throw std::runtime_error("--package " + text + ": give NAME=FOLDER");
   folders.packages[text.substr(0, equals)] = text.substr(equals + 1);
 }
 
@@ -70,7 +77,10 @@ CLI::App* add_from_urdf(CLI::App& program, Options& options) {
       ->type_name("FILE");
   command->add_option("--out", options.out, "the description, .toml [standard output]")->type_name("FILE");
   const auto several = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {
-    command->add_option(name, values, help)->allow_extra_args(false)->type_name(type);
+    command->add_option(name, values, help)
+        ->allow_extra_args(false)
+        ->type_name(type)
+        ->check(command_line::readable_by([type](const std::string& text) { require_assignment(text, type); }));
   };
   several("--set", options.from.set,
           "a key's value, such as drive.max_force_n=300, wheel.friction_along=0.7 for all wheels, or "
@@ -91,7 +101,7 @@ CLI::App* add_from_urdf(CLI::App& program, Options& options) {
           "what left and right, and front and rear flippers, may differ by, in mm; for each, 2 mrad and 2 % of mass "
           "[0.5]")
       ->type_name("MM")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(command_line::number_in(0, 1000));
   several("--package", options.packages, "where package://NAME/ in a mesh's name is; may be given several times",
           "NAME=FOLDER");
   return command;
@@ -110,15 +120,10 @@ int main(int argc, char** argv) {
   // Options, then one of both ways; all errors end with the same status.
   Options options;
   CLI::App program{"Makes a robot's description of a URDF, and a URDF of a description.", "kenaf-describe"};
-  program.set_version_flag("--version", KENAF_VERSION);
   program.require_subcommand(1);
   const CLI::App* from_urdf = add_from_urdf(program, options);
   add_to_urdf(program, options);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = command_line::parse(program, argc, argv)) return *status;
   try {
     if (from_urdf->parsed())
       run_from_urdf(std::move(options));

@@ -12,8 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "formats/runs/dataset.hpp"
 #include "formats/runs/whole_file.hpp"
+#include "formats/settings/numbers.hpp"
 #include "tools/draw/picture.hpp"
 
 namespace {
@@ -46,19 +49,29 @@ void complete_from_dataset(Options& options) {
   if (options.world.empty()) options.world = "flat";
 }
 
+struct Size {
+  int width, height;
+};
+
+// Throws std::runtime_error if the text is not WIDTHxHEIGHT.
+Size size_from(const std::string& text) {
+  const std::size_t x = text.find('x');
+  const auto width = settings::whole_number_from(text.substr(0, x));
+  const auto height = settings::whole_number_from(x == text.npos ? "" : text.substr(x + 1));
+  if (!width || !height || *width < 480 || *height < 300 || *width > 10000 || *height > 10000 ||
+      *height * 5 < *width * 2) {
+    throw std::runtime_error(
+        "must be WIDTHxHEIGHT in pixels, such as 1920x1200, from 480x300 to 10000x10000, and no flatter than 5 : 2");
+  }
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
 draw::Canvas make_canvas(const Options& options) {
   const std::string extension = fs::path(options.out).extension();
   if (extension != ".png" && extension != ".svg") {
     throw std::runtime_error(options.out + ": the picture's name must end in .png or .svg");
   }
-  int width = 0, height = 0, used = 0;
-  if (std::sscanf(options.size.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
-      static_cast<std::size_t>(used) != options.size.size() || width < 480 || height < 300 || width > 10000 ||
-      height > 10000 || height * 5 < width * 2) {
-    throw std::runtime_error("--size " + options.size +
-                             ": give WIDTHxHEIGHT in pixels, such as 1920x1200, from 480x300 to " +
-                             "10000x10000, and no flatter than 5 : 2");
-  }
+  const auto [width, height] = size_from(options.size);
   return draw::Canvas(extension == ".png" ? draw::Format::png : draw::Format::svg, width, height);
 }
 
@@ -101,7 +114,6 @@ int main(int argc, char** argv) {
   // Options, then the picture; both kinds of errors end with the same status.
   Options options;
   CLI::App app{"Draws a run of the robot from above and, if it climbs, from the side.", "kenaf-draw"};
-  app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("run", options.run, "the run, a CSV file in the kenaf-runs/1 format")
       ->required()
       ->type_name("RUN.csv");
@@ -112,15 +124,13 @@ int main(int argc, char** argv) {
   app.add_option("--world", options.world, "world: a shipped name or an SDF file [the dataset's, else flat]");
   app.add_option("--out", options.out, "the picture, .png or .svg")->required()->type_name("FILE");
   app.add_option("--view", options.view, "top, side, or auto: from the side too where the robot climbs")
-      ->check(CLI::IsMember({"top", "side", "auto"}))
+      ->check(command_line::one_of({"top", "side", "auto"}))
       ->capture_default_str();
-  app.add_option("--size", options.size, "pixels, WIDTHxHEIGHT")->capture_default_str();
+  app.add_option("--size", options.size, "pixels, WIDTHxHEIGHT")
+      ->check(command_line::readable_by([](const std::string& text) { (void)size_from(text); }))
+      ->capture_default_str();
   app.add_option("--title", options.title, "the picture's title [the run's name]");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = command_line::parse(app, argc, argv)) return *status;
   try {
     draw_to_file(std::move(options));
   } catch (const std::exception& error) {

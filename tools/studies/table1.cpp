@@ -13,6 +13,8 @@
 #include <optional>
 #include <thread>
 
+#include "command_line/checks.hpp"
+#include "command_line/parse.hpp"
 #include "gap/parallel.hpp"
 #include "rollout/published_experiments.hpp"
 
@@ -240,12 +242,14 @@ void write_effects(const std::filesystem::path& file, unsigned jobs) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Critical sizes of the published steps and trenches, and the influence of each effect on the table.");
+  CLI::App app("Critical sizes of the published steps and trenches, and the influence of each effect on the table.",
+               "table1-study");
   std::filesystem::path folder = "tools/studies/results";
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
   app.add_option("--out", folder, "Folder for table1-critical.csv and table1-effects.csv")->capture_default_str();
-  app.add_option("--jobs", jobs, "Threads; the results do not depend on it")->check(CLI::Range(1, 1024));
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--jobs", jobs, "Threads; the results do not depend on it")
+      ->check(kenaf::command_line::whole_number(1, kenaf::command_line::kMostJobs));
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   try {
     std::filesystem::create_directories(folder);
     write_critical_sizes(folder / "table1-critical.csv", jobs);

@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "command_line/parse.hpp"
 #include "tools/studies/validation/comparison_row.hpp"
 #include "tools/studies/validation/limits.hpp"
 #include "tools/studies/validation/maxxii.hpp"
@@ -36,12 +37,11 @@ void print(const SteadyStates& states) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app{"Compares the simulator with measurements and closed forms, as Markdown tables."};
+  CLI::App app{"Compares the simulator with measurements and closed forms, as Markdown tables.", "validation-study"};
   std::filesystem::path table;
   app.add_option("--maxxii", table, "steady states of MAXXII, a CSV file; without it they are left out")
-      ->check(CLI::ExistingFile)
       ->type_name("FILE.csv");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   print("Turns on the spot, real robots", turns_of_real_robots());
   if (!table.empty()) print(compare_steady_states(table));
   print("Turns on the spot, closed form", turns_by_closed_form());
