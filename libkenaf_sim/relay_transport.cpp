@@ -62,7 +62,10 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   relay_ = config.relay;
   link_timeout_s_ = config.link_timeout_s;
   connect_timeout_s_ = config.connect_timeout_s;
-  connect_socket();
+  addresses_ = look_up("relay", relay_, SOCK_DGRAM);
+  address_count_ = 0;
+  for (const addrinfo* at = addresses_.get(); at != nullptr; at = at->ai_next) ++address_count_;
+  connect_to(0);
   while (session_ == 0) {
     if (getrandom(&session_, sizeof session_, 0) < 0) {
       throw Error(HRT_E_INTERNAL, fmt::format("getrandom: {}", std::strerror(errno)));
@@ -86,16 +89,22 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   return connection;
 }
 
-void RelayTransport::connect_socket() {
-  const Addresses found = look_up("relay", relay_, SOCK_DGRAM);
-  // kenaf-relayd listens on IPv4 only, and "localhost" may resolve to ::1 first
-  const addrinfo* address = found.get();
-  while (address != nullptr && address->ai_family != AF_INET) address = address->ai_next;
-  if (address == nullptr) address = found.get();
-  socket_ = socket(address->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket_ < 0 || connect(socket_, address->ai_addr, address->ai_addrlen) < 0) {
+void RelayTransport::connect_to(std::size_t number) {
+  const addrinfo* found = addresses_.get();
+  for (std::size_t i = 0; i < number; ++i) found = found->ai_next;
+  if (socket_ >= 0) ::close(socket_);
+  address_ = number;
+  port_closed_ = false;
+  socket_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  // without a way to this address another one may have one
+  if (socket_ >= 0 && connect(socket_, found->ai_addr, found->ai_addrlen) == 0) return;
+  if (address_count_ == 1)
     throw Error(HRT_E_LINK, fmt::format("no way to the relay at {}: {}", relay_, std::strerror(errno)));
-  }
+  port_closed_ = true;
+}
+
+void RelayTransport::connect_to_next() {
+  connect_to((address_ + 1) % address_count_);
 }
 
 hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
@@ -103,13 +112,24 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
   const Clock::time_point deadline = start + seconds<Clock::duration>(connect_timeout_s_);
   Clock::time_point hello_at = start;
   std::optional<protocol::relay::Refused> refused;
+  // The relay listens on one of the addresses that its name has, such as 127.0.0.1 and ::1 of localhost. Each is asked
+  // in turn: the next one at once if nobody listens, and after its share of the time if nobody answers.
+  const Clock::duration share = (deadline - start) / static_cast<std::int64_t>(address_count_);
+  Clock::time_point next_address_at = start + share;
+  std::size_t asked = 1;  // since the last pause
   for (;;) {
     const Clock::time_point now = Clock::now();
     if (refused && refused->reason == protocol::relay::RefusedReason::busy && now - start >= kBusyPatience) break;
     if (now >= deadline) break;
+    if (!refused && now >= next_address_at) {
+      connect_to_next();
+      next_address_at = now + share;
+      hello_at = now;
+    }
     if (now >= hello_at) {
       transmit(hello);
       hello_at = now + kHelloEvery;
+      asked = 1;
     }
     while (const std::optional<protocol::relay::Datagram> datagram = receive()) {
       if (const auto* welcome = std::get_if<protocol::relay::Welcome>(&*datagram);
@@ -124,6 +144,13 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
           throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}", relay_, words(*answer)));
         }
       }
+    }
+    if (!refused && port_closed_ && asked < address_count_) {
+      connect_to_next();
+      next_address_at = now + share;
+      ++asked;
+      transmit(hello);
+      continue;
     }
     if (!wait_readable(std::min(hello_at, deadline)))
       throw Error(HRT_E_CLOSED, "closed while the robot was being opened");

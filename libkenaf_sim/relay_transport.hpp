@@ -13,6 +13,7 @@
 
 #include "formats/protocol/relay_datagram.hpp"
 #include "hrt/transport.hpp"
+#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 
@@ -36,7 +37,8 @@ class RelayTransport final : public hrt::Transport {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void connect_socket();
+  void connect_to(std::size_t address);  // of those of the relay's name
+  void connect_to_next();
   hrt::Connection greet(const protocol::relay::Hello& hello);
   // Returns the next well-formed datagram waiting in the socket.
   std::optional<protocol::relay::Datagram> receive();
@@ -50,6 +52,8 @@ class RelayTransport final : public hrt::Transport {
   bool wait_readable(Clock::time_point until);
 
   std::string relay_;
+  Addresses addresses_{nullptr, &freeaddrinfo};
+  std::size_t address_count_ = 0, address_ = 0;  // of addresses_; which one the socket is connected to
   double link_timeout_s_ = 0, connect_timeout_s_ = 0;
   int socket_ = -1, interrupt_ = -1;
   bool not_at_start_ = false;  // as of the newest State

@@ -98,14 +98,14 @@ void Relay::shut_down() {
 void Relay::receive_commands() {
   std::array<pollfd, 2> watched{{{udp_.get(), POLLIN, 0}, {receiver_waker_.fd(), POLLIN, 0}}};
   while (!threads_end_) {
-    sockaddr_in from{};
+    sockaddr_storage from{};
     socklen_t size = sizeof from;
     const ssize_t got =
         ::recvfrom(udp_.get(), received_.data(), received_.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
     if (got < 0) {
       ::poll(watched.data(), watched.size(), -1);
     } else {
-      take_datagram(static_cast<std::size_t>(got), {ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)});
+      take_datagram(static_cast<std::size_t>(got), address_of(from));
     }
   }
 }
@@ -252,12 +252,10 @@ void Relay::request_link(const WorldSession& session) {
 void Relay::send(const Address& to, const protocol::relay::Datagram& datagram) {
   std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
   const std::size_t size = protocol::relay::encode(datagram, bytes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(to.ipv4);
-  address.sin_port = htons(to.port);
+  const Endpoint endpoint = endpoint_of(to, is_ipv4(address_) ? AF_INET : AF_INET6);
   // A datagram that cannot be sent counts as lost, which the protocol tolerates.
-  ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&endpoint.address),
+           endpoint.size);
 }
 
 void Relay::open_world(const protocol::relay::Hello& hello) {

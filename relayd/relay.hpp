@@ -27,7 +27,7 @@ namespace kenaf::relayd {
 
 struct RelayOptions {
   protocol::HostPort world_server{"127.0.0.1", 3000};
-  Address listen{0x7f000001, 45454};  // port 0: any free one
+  Address listen = parse_address("127.0.0.1:45454");  // port 0: any free one
   RobotPlacement placement;
 };
 

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <stdexcept>
 
@@ -23,12 +25,13 @@ using Clock = std::chrono::steady_clock;
 // Holds one second of commands at 1 kHz if the relay is held up. The kernel may grant less.
 constexpr int kReceiveBufferBytes = 1 << 20;
 
-sockaddr_in to_sockaddr(const Address& address) {
-  sockaddr_in out{};
-  out.sin_family = AF_INET;
-  out.sin_addr.s_addr = htonl(address.ipv4);
-  out.sin_port = htons(address.port);
-  return out;
+constexpr std::array<std::uint8_t, 12> kIpv4Prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
+
+// The index of the interface that a zone names; 0: there is none.
+std::uint32_t zone_index(const std::string& zone) {
+  std::uint32_t index = 0;
+  const auto [end, error] = std::from_chars(zone.data(), zone.data() + zone.size(), index);
+  return error == std::errc{} && end == zone.data() + zone.size() ? index : ::if_nametoindex(zone.c_str());
 }
 
 // Returns 0, or the errno of the failed connection.
@@ -49,42 +52,110 @@ Descriptor::~Descriptor() {
   if (fd_ >= 0) ::close(fd_);
 }
 
+bool is_ipv4(const Address& address) {
+  return std::ranges::equal(kIpv4Prefix, std::span(address.ip).first<kIpv4Prefix.size()>());
+}
+
 std::string to_text(const Address& address) {
-  return fmt::format("{}.{}.{}.{}:{}", address.ipv4 >> 24, (address.ipv4 >> 16) & 0xff, (address.ipv4 >> 8) & 0xff,
-                     address.ipv4 & 0xff, address.port);
+  const auto* const bytes = address.ip.data();
+  std::array<char, INET6_ADDRSTRLEN> host{};
+  if (is_ipv4(address))
+    ::inet_ntop(AF_INET, bytes + kIpv4Prefix.size(), host.data(), host.size());
+  else
+    ::inet_ntop(AF_INET6, bytes, host.data(), host.size());
+  const std::string zone = address.zone == 0 ? "" : fmt::format("%{}", address.zone);
+  return protocol::to_text({host.data() + zone, address.port});
 }
 
 bool is_loopback(const Address& address) {
-  return (address.ipv4 >> 24) == 127;
+  if (is_ipv4(address)) return address.ip[kIpv4Prefix.size()] == 127;
+  return std::ranges::equal(address.ip, in6addr_loopback.s6_addr);
+}
+
+Endpoint endpoint_of(const Address& address, int family) {
+  Endpoint out;
+  if (family == AF_INET) {
+    sockaddr_in v4{};
+    v4.sin_family = AF_INET;
+    v4.sin_port = htons(address.port);
+    std::memcpy(&v4.sin_addr, address.ip.data() + kIpv4Prefix.size(), sizeof v4.sin_addr);
+    std::memcpy(&out.address, &v4, sizeof v4);
+    out.size = sizeof v4;
+  } else {
+    sockaddr_in6 v6{};
+    v6.sin6_family = AF_INET6;
+    v6.sin6_port = htons(address.port);
+    v6.sin6_scope_id = address.zone;
+    std::memcpy(&v6.sin6_addr, address.ip.data(), sizeof v6.sin6_addr);
+    std::memcpy(&out.address, &v6, sizeof v6);
+    out.size = sizeof v6;
+  }
+  return out;
+}
+
+Address address_of(const sockaddr_storage& address) {
+  Address out;
+  if (address.ss_family == AF_INET) {
+    sockaddr_in v4{};
+    std::memcpy(&v4, &address, sizeof v4);
+    std::ranges::copy(kIpv4Prefix, out.ip.begin());
+    std::memcpy(out.ip.data() + kIpv4Prefix.size(), &v4.sin_addr, sizeof v4.sin_addr);
+    out.port = ntohs(v4.sin_port);
+  } else if (address.ss_family == AF_INET6) {
+    sockaddr_in6 v6{};
+    std::memcpy(&v6, &address, sizeof v6);
+    std::memcpy(out.ip.data(), &v6.sin6_addr, sizeof v6.sin6_addr);
+    out.port = ntohs(v6.sin6_port);
+    out.zone = v6.sin6_scope_id;
+  }
+  return out;
 }
 
 protocol::HostPort parse_server(std::string_view text) {
   std::optional<protocol::HostPort> parsed = protocol::parse_host_port(text);
-  if (!parsed) throw std::runtime_error(fmt::format("'{}' is not HOST:PORT with a port from 0 to 65535", text));
+  if (!parsed) throw std::runtime_error(std::string(protocol::kMustBeHostPort));
   return *std::move(parsed);
 }
 
 Address parse_address(std::string_view text) {
-  const protocol::HostPort parsed = parse_server(text);
-  in_addr ipv4{};
-  if (::inet_pton(AF_INET, parsed.host == "localhost" ? "127.0.0.1" : parsed.host.c_str(), &ipv4) != 1) {
-    throw std::runtime_error(fmt::format("'{}' is not an IPv4 address such as 127.0.0.1", parsed.host));
+  const std::optional<protocol::HostPort> parsed = protocol::parse_host_port(text);
+  const std::optional<std::string> host = parsed ? protocol::parse_listen_host(parsed->host) : std::nullopt;
+  if (!host) {
+    throw std::runtime_error(
+        "must be ADDRESS:PORT, such as 127.0.0.1:45454 or [::1]:45454, with an address of this machine and a port from "
+        "0 to 65535");
   }
-  return {ntohl(ipv4.s_addr), parsed.port};
+  Address out{{}, parsed->port};
+  if (::inet_pton(AF_INET, host->c_str(), out.ip.data() + kIpv4Prefix.size()) == 1) {
+    std::ranges::copy(kIpv4Prefix, out.ip.begin());
+    return out;
+  }
+  const std::size_t percent = host->find('%');
+  ::inet_pton(AF_INET6, host->substr(0, percent).c_str(), out.ip.data());
+  if (percent == std::string::npos) return out;
+  out.zone = zone_index(host->substr(percent + 1));
+  if (out.zone == 0)
+    throw std::runtime_error(
+        fmt::format("must name a network interface after the %: there is no '{}' here", host->substr(percent + 1)));
+  return out;
 }
 
 Descriptor open_udp(const Address& address, Address& bound) {
-  Descriptor fd(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  const sockaddr_in wanted = to_sockaddr(address);
-  if (fd.get() < 0 || ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&wanted), sizeof wanted) != 0) {
+  const int family = is_ipv4(address) ? AF_INET : AF_INET6;
+  Descriptor fd(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int off = 0;
+  // whatever the system's default is (net.ipv6.bindv6only)
+  if (fd.get() >= 0 && family == AF_INET6) ::setsockopt(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
+  const Endpoint wanted = endpoint_of(address, family);
+  if (fd.get() < 0 || ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&wanted.address), wanted.size) != 0) {
     throw std::runtime_error(fmt::format("cannot listen on UDP {}: {}; choose another address with --listen",
                                          to_text(address), std::strerror(errno)));
   }
   ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
-  sockaddr_in got{};
+  sockaddr_storage got{};
   socklen_t size = sizeof got;
   ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&got), &size);
-  bound = {ntohl(got.sin_addr.s_addr), ntohs(got.sin_port)};
+  bound = address_of(got);
   return fd;
 }
 

@@ -1,9 +1,10 @@
-// POSIX sockets: owned descriptors, IPv4 addresses, and the ways in which the relay opens sockets. Functions throw
+// POSIX sockets: owned descriptors, IP addresses, and the ways in which the relay opens sockets. Functions throw
 // std::runtime_error with a text for the user unless stated otherwise.
 #pragma once
 
 #include <sys/socket.h>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -33,21 +34,25 @@ class Descriptor {
   int fd_ = -1;
 };
 
-// An IPv4 address and port, in host byte order.
+// An IP address and port. IPv4 is mapped into IPv6, "::ffff:127.0.0.1" (RFC 4291, section 2.5.5.2), as a socket of both
+// families sees its peers: so a peer is the same at every socket.
 struct Address {
-  std::uint32_t ipv4 = 0;
+  std::array<std::uint8_t, 16> ip{};
   std::uint16_t port = 0;
+  std::uint32_t zone = 0;  // of a link-local IPv6 address: the interface's index; 0: none
   bool operator==(const Address&) const = default;
 };
-std::string to_text(const Address& address);  // "127.0.0.1:45454"
+std::string to_text(const Address& address);  // "127.0.0.1:45454", "[::1]:45454"
 bool is_loopback(const Address& address);
+bool is_ipv4(const Address& address);
 
-// HOST:PORT, also "[v6]:PORT", as formats/protocol/host_port.hpp; port 0 is accepted.
+// HOST:PORT (formats/protocol/host_port.hpp); port 0 is accepted.
 protocol::HostPort parse_server(std::string_view text);
-// The same, restricted to a dotted IPv4 address or "localhost".
+// The same of an address to listen on: in digits, or "localhost", which is 127.0.0.1.
 Address parse_address(std::string_view text);
 
-// Returns a bound, non-blocking UDP socket; `bound` becomes its address.
+// Returns a bound, non-blocking UDP socket; `bound` becomes its address. On [::] it gets the datagrams of both
+// families.
 Descriptor open_udp(const Address& address, Address& bound);
 
 // For poll(): milliseconds until `until`, rounded up so that poll() does not return just before it; a minute at most.
@@ -58,6 +63,11 @@ struct Endpoint {
   sockaddr_storage address{};
   socklen_t size = 0;
 };
+
+// For the system's calls on a socket of a family, AF_INET or AF_INET6. Of AF_INET the address must be IPv4.
+Endpoint endpoint_of(const Address& address, int family);
+// Of either family; anything else is an empty address.
+Address address_of(const sockaddr_storage& address);
 
 // Connects by TCP to the first of `endpoints` that accepts; the socket is non-blocking, with TCP_NODELAY. Waits until
 // `deadline` at most, shared among the endpoints. Returns nullopt once `cancel_fd` is readable, which says nothing

@@ -160,7 +160,7 @@ class Console {
     send(wish);
   }
 
-  void send(const Datagram& datagram) const {
+  void send(const Datagram& datagram) {
     std::array<std::byte, kMaxDatagramBytes> buffer;
     socket_.send(std::span(buffer).first(encode(datagram, buffer)));
   }
@@ -205,7 +205,9 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app("The operator's console: drives the robot through its control process, operator_control.",
                "operator_console");
-  app.add_option("--control", options.control, "address of the control process, HOST:PORT")->capture_default_str();
+  app.add_option("--control", options.control, "address of the control process, HOST:PORT")
+      ->check(kenaf::command_line::readable_by(require_host_port))
+      ->capture_default_str();
   app.add_option("--gamepad", options.gamepad,
                  "device of the gamepad, such as /dev/input/js1, or 'none'; default: the first one found");
   app.add_option("--camera", options.camera, "address of the camera's picture, shown on the screen");

@@ -30,6 +30,7 @@ namespace {
 
 using namespace kenaf::teleop;
 using kenaf::command_line::number_in;
+using kenaf::command_line::readable_by;
 
 constexpr int kTurn_ms = 10;  // loop period: one cycle of the robot
 constexpr double kStatusPeriod_s = 0.05;
@@ -54,7 +55,7 @@ double now_s() {
 class Control {
  public:
   Control(const Options& options, const hrt_config& config)
-      : options_(options), socket_(UdpSocket::bound_to(resolve(options.listen))), robot_(config) {}
+      : options_(options), socket_(UdpSocket::bound_to(resolve_listener(options.listen))), robot_(config) {}
 
   std::uint16_t port() const { return socket_.port(); }
 
@@ -212,6 +213,7 @@ int main(int argc, char** argv) {
       "robot.",
       "operator_control");
   app.add_option("--listen", options.listen, "address to listen on, ADDR:PORT; port 0: any free one")
+      ->check(readable_by(require_host_port))
       ->capture_default_str();
   app.add_option("--port-file", options.port_file, "write the port into this file");
   app.add_option("--silence", options.limits.silence_s, "seconds of silence of the console after which the robot halts")

@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -22,6 +23,11 @@ const sockaddr* plain(const Peer& peer) {
   return reinterpret_cast<const sockaddr*>(&peer.address);
 }
 
+// Returns -1 with errno if there is none, as of IPv6 where the machine has it not.
+int new_socket(int family) {
+  return ::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+}
+
 }  // namespace
 
 std::string to_text(const Peer& peer) {
@@ -35,9 +41,13 @@ std::string to_text(const Peer& peer) {
   return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host.data(), is_v6 ? "]" : "", port.data());
 }
 
-Peer resolve(const std::string& host_port) {
+void require_host_port(const std::string& host_port) {
+  if (!protocol::split_host_port(host_port)) throw std::runtime_error(std::string(protocol::kMustBeHostPort));
+}
+
+std::vector<Peer> resolve(const std::string& host_port) {
   const auto sides = protocol::split_host_port(host_port);
-  if (!sides) throw std::runtime_error(fmt::format("'{}' is not HOST:PORT", host_port));
+  if (!sides) throw std::runtime_error(fmt::format("'{}' {}", host_port, protocol::kMustBeHostPort));
   const std::string host(sides->host), port(sides->port);
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
@@ -45,37 +55,65 @@ Peer resolve(const std::string& host_port) {
   const int error = ::getaddrinfo(host.c_str(), port.c_str(), &hints, &found);
   if (error != 0) throw std::runtime_error(fmt::format("cannot find '{}': {}", host_port, ::gai_strerror(error)));
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, &::freeaddrinfo);
-  Peer peer;
-  std::memcpy(&peer.address, found->ai_addr, found->ai_addrlen);
-  peer.size = found->ai_addrlen;
-  return peer;
+  std::vector<Peer> peers;
+  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
+    Peer& peer = peers.emplace_back();
+    std::memcpy(&peer.address, at->ai_addr, at->ai_addrlen);
+    peer.size = at->ai_addrlen;
+  }
+  return peers;
 }
 
-UdpSocket::UdpSocket(int family) : descriptor_(::socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
-  if (descriptor_ < 0) throw std::runtime_error(fmt::format("cannot open a UDP socket: {}", std::strerror(errno)));
+Peer resolve_listener(const std::string& host_port) {
+  const std::vector<Peer> peers = resolve(host_port);
+  const auto v4 = std::ranges::find(peers, AF_INET, [](const Peer& peer) { return peer.address.ss_family; });
+  return v4 == peers.end() ? peers.front() : *v4;
 }
 
 UdpSocket UdpSocket::bound_to(const Peer& local) {
-  UdpSocket socket(local.address.ss_family);
+  UdpSocket socket(new_socket(local.address.ss_family));
+  if (socket.descriptor_ < 0)
+    throw std::runtime_error(fmt::format("cannot open a UDP socket: {}", std::strerror(errno)));
   if (::bind(socket.descriptor_, plain(local), local.size) != 0) {
     throw std::runtime_error(fmt::format("cannot listen on {}: {}", to_text(local), std::strerror(errno)));
   }
   return socket;
 }
 
-UdpSocket UdpSocket::connected_to(const Peer& remote) {
-  UdpSocket socket(remote.address.ss_family);
-  if (::connect(socket.descriptor_, plain(remote), remote.size) != 0) {
-    throw std::runtime_error(fmt::format("no way to {}: {}", to_text(remote), std::strerror(errno)));
+UdpSocket UdpSocket::connected_to(const std::vector<Peer>& remotes) {
+  std::string why;
+  for (std::size_t i = 0; i < remotes.size(); ++i) {
+    UdpSocket socket(new_socket(remotes[i].address.ss_family));
+    if (socket.descriptor_ >= 0 && ::connect(socket.descriptor_, plain(remotes[i]), remotes[i].size) == 0) {
+      if (remotes.size() > 1) socket.remotes_ = remotes;
+      socket.remote_ = i;
+      return socket;
+    }
+    why = fmt::format("no way to {}: {}", to_text(remotes[i]), std::strerror(errno));
   }
-  return socket;
+  throw std::runtime_error(why);
+}
+
+// To one that there is no way to, nothing is sent and nothing comes from it: the next refusal, or none, decides.
+void UdpSocket::connect_to_next() {
+  for (std::size_t tried = 0; tried < remotes_.size(); ++tried) {
+    remote_ = (remote_ + 1) % remotes_.size();
+    const Peer& remote = remotes_[remote_];
+    const int next = new_socket(remote.address.ss_family);
+    if (next >= 0 && ::connect(next, plain(remote), remote.size) == 0) {
+      ::close(std::exchange(descriptor_, next));
+      return;
+    }
+    if (next >= 0) ::close(next);
+  }
 }
 
 UdpSocket::~UdpSocket() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), remotes_(std::move(other.remotes_)), remote_(other.remote_) {}
 
 std::uint16_t UdpSocket::port() const {
   Peer own;
@@ -85,15 +123,20 @@ std::uint16_t UdpSocket::port() const {
   return ntohs(reinterpret_cast<const sockaddr_in&>(own.address).sin_port);
 }
 
-std::optional<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Peer& from) const {
+std::optional<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Peer& from) {
   from.size = sizeof from.address;
   ssize_t got = -1;
   do {
     // an error here is a delayed report about an earlier datagram that nobody received (ECONNREFUSED), not a datagram
     got = ::recvfrom(descriptor_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from.address),
                      &from.size);
+    if (got < 0 && errno == ECONNREFUSED && !remotes_.empty()) {
+      connect_to_next();
+      return std::nullopt;
+    }
   } while (got < 0 && (errno == ECONNREFUSED || errno == EINTR));
   if (got < 0) return std::nullopt;
+  remotes_.clear();
   return static_cast<std::size_t>(got);
 }
 
@@ -101,8 +144,9 @@ void UdpSocket::send(std::span<const std::byte> datagram, const Peer& to) const 
   (void)::sendto(descriptor_, datagram.data(), datagram.size(), MSG_NOSIGNAL, plain(to), to.size);
 }
 
-void UdpSocket::send(std::span<const std::byte> datagram) const {
-  (void)::send(descriptor_, datagram.data(), datagram.size(), MSG_NOSIGNAL);
+void UdpSocket::send(std::span<const std::byte> datagram) {
+  const ssize_t sent = ::send(descriptor_, datagram.data(), datagram.size(), MSG_NOSIGNAL);
+  if (sent < 0 && errno == ECONNREFUSED && !remotes_.empty()) connect_to_next();
 }
 
 }  // namespace kenaf::teleop

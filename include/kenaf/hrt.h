@@ -139,7 +139,8 @@ enum { HRT_LEFT = 0, HRT_RIGHT = 1 };
  *   2. a TOML file: the one named by the environment variable KENAF_CONFIG, else ./kenaf.toml, else
  *      ~/.config/kenaf/kenaf.toml; its keys are the member names below, and an unknown key is an error,
  *   3. environment variables: KENAF_ and the member's name in capitals, such as KENAF_RELAY=127.0.0.1:45454 or
- *      KENAF_PERIOD_S=0.02; true and false, or 1 and 0.
+ *      KENAF_PERIOD_S=0.02; true and false, or 1 and 0. A variable whose name begins with KENAF_ and is neither one of
+ *      these nor one of Kenaf's others (the user guide lists them) is an error.
  * Both libraries read all keys, so that they can share one file; each uses its own. */
 typedef struct hrt_config {
   uint32_t size;   /* sizeof(hrt_config) of the program, so that the struct can grow */
@@ -173,7 +174,7 @@ typedef struct hrt_config {
   double hold_s;       /* how long lock step lets a program work or sleep, see Lock step: 0 to 0.2, default 0.05 */
   int32_t lockstep;    /* 1: robot time waits for this program (default); 0: it does not */
   int32_t reset_robot; /* 1: init returns the robot to its start pose (default); 0: it stays where it is */
-  char relay[128];     /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
+  char relay[128];     /* HOST:PORT of kenaf-relayd, IPv6 with or without brackets, default 127.0.0.1:45454 */
 
   /* libkenaf_real. */
   double can_timeout_s;   /* how long init waits until all nodes of the bus have started, wall clock: 0.05 to 60,

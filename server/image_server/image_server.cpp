@@ -14,10 +14,12 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "formats/protocol/host_port.hpp"
 #include "server/image_server/image_connection.hpp"
 
 namespace kenaf::image_server {
@@ -30,13 +32,14 @@ namespace {
 
 tcp::acceptor listen_for_readers(asio::io_context& io, const std::string& address, std::uint16_t port) {
   error_code error;
-  const auto ip = asio::ip::make_address(address == "localhost" ? "127.0.0.1" : address, error);
-  if (error) throw std::runtime_error(fmt::format("\"{}\" is not an address to listen on", address));
+  const std::optional<std::string> host = protocol::parse_listen_host(address);
+  const auto ip = asio::ip::make_address(host.value_or(""), error);
+  if (!host || error) throw std::runtime_error(fmt::format("\"{}\" {}", address, protocol::kMustBeListenHost));
   try {
     return tcp::acceptor(io, tcp::endpoint(ip, port));
   } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another port with --camera-port", address,
-                                         port, failure.code().message()));
+    throw std::runtime_error(fmt::format("cannot listen on {}: {}; choose another port with --camera-port",
+                                         protocol::to_text({*host, port}), failure.code().message()));
   }
 }
 

@@ -1,31 +1,31 @@
 #include "server/image_server/options.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <charconv>
+#include <optional>
 #include <stdexcept>
+
+#include "formats/settings/nearest_word.hpp"
+#include "formats/settings/numbers.hpp"
 
 namespace kenaf::image_server {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kTypeNames{"raw", "superb", "good", "normal", "fair", "bad"};
+const std::array<std::string, 6> kTypeNames{"raw", "superb", "good", "normal", "fair", "bad"};
 
 }  // namespace
 
 void set_cameras(CameraOptions& options, std::string_view text) {
-  if (text != "on" && text != "off") throw std::runtime_error(fmt::format("'{}' is neither on nor off", text));
+  if (text != "on" && text != "off") throw std::runtime_error("must be on or off");
   options.on = text == "on";
 }
 
 void set_camera_port(CameraOptions& options, std::string_view text) {
   options.image_server = text != "off";
   if (!options.image_server) return;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), options.image_port);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw std::runtime_error(fmt::format("'{}' is neither a port, 0 to 65535, nor off", text));
-  }
+  const std::optional<std::uint64_t> port = settings::whole_number_from(text);
+  if (!port || *port > 65535) throw std::runtime_error("must be a port from 0 to 65535, or off");
+  options.image_port = static_cast<std::uint16_t>(*port);
 }
 
 void set_camera_image(CameraOptions& options, std::string_view text) {
@@ -34,7 +34,7 @@ void set_camera_image(CameraOptions& options, std::string_view text) {
     options.image_type = static_cast<ImageType>(i);
     return;
   }
-  throw std::runtime_error(fmt::format("'{}' is none of raw, superb, good, normal, fair and bad", text));
+  throw std::runtime_error("must be " + settings::either_of(kTypeNames) + settings::did_you_mean(text, kTypeNames));
 }
 
 int jpeg_quality(ImageType type, int own_quality) {

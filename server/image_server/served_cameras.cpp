@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "formats/protocol/host_port.hpp"
+
 namespace kenaf::image_server {
 
 ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions& options, const std::string& address) {
@@ -15,7 +17,8 @@ ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions
   try {
     cameras.image_server =
         std::make_unique<ImageServer>(*cameras.feed, address, options.image_port, options.image_type);
-    spdlog::info("camera pictures on {}:{}", address, cameras.image_server->port());
+    spdlog::info("camera pictures on {}", protocol::to_text({protocol::parse_listen_host(address).value_or(address),
+                                                             cameras.image_server->port()}));
   } catch (const std::runtime_error& error) {
     if (options.port_asked_for) throw std::runtime_error(fmt::format("no image server: {}", error.what()));
     spdlog::warn("no image server: {}", error.what());

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "formats/protocol/host_port.hpp"
 #include "server/live/access.hpp"
 #include "server/live/http_connection.hpp"
 
@@ -29,8 +30,8 @@ tcp::acceptor listen_for_browsers(asio::io_context& io, const ViewOptions& optio
   try {
     return tcp::acceptor(io, tcp::endpoint(asio::ip::make_address(options.address), options.port));
   } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another address with --view ADDRESS:PORT",
-                                         options.address, options.port, failure.code().message()));
+    throw std::runtime_error(fmt::format("cannot listen on {}: {}; choose another address with --view ADDRESS:PORT",
+                                         protocol::to_text({options.address, options.port}), failure.code().message()));
   }
 }
 

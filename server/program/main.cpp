@@ -9,6 +9,7 @@
 
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
+#include "formats/protocol/host_port.hpp"
 #include "formats/runs/port_file.hpp"
 #include "server/image_server/served_cameras.hpp"
 #include "server/live/view.hpp"
@@ -30,7 +31,12 @@ int main(int argc, char** argv) {
   app.add_option("--port", options.port, "TCP port; 0: any free one, which is printed")
       ->capture_default_str()
       ->check(command_line::whole_number(0, 65535));
-  app.add_option("--listen", options.listen_address, "Address to listen on")->capture_default_str();
+  app.add_option("--listen", options.listen_address, "Address to listen on")
+      ->capture_default_str()
+      ->check(readable_by([](const std::string& text) {
+        if (!kenaf::protocol::parse_listen_host(text))
+          throw std::runtime_error(std::string(kenaf::protocol::kMustBeListenHost));
+      }));
   app.add_option("--speed", options.speed, "Speed in multiples of real time; 0: as fast as possible")
       ->capture_default_str()
       ->check(command_line::number_in(0, 1e6));
@@ -98,7 +104,8 @@ int main(int argc, char** argv) {
     });
     int status = 0;
     try {
-      spdlog::info("world {} on {}:{}", options.world, options.listen_address, server.port());
+      const std::string host = kenaf::protocol::parse_listen_host(options.listen_address).value();
+      spdlog::info("world {} on {}", options.world, kenaf::protocol::to_text({host, server.port()}));
       if (!port_file.empty()) kenaf::runs::write_port_file(port_file, server.port());
       server.run();
       spdlog::info("stopped");

@@ -13,10 +13,12 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "formats/protocol/host_port.hpp"
 #include "formats/protocol/log_limiter.hpp"
 #include "server/world_server/connection.hpp"
 #include "server/world_server/simulation.hpp"
@@ -42,13 +44,11 @@ std::chrono::steady_clock::time_point time_point(double seconds) {
 }
 
 tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
+  const std::optional<std::string> host = protocol::parse_listen_host(options.listen_address);
   error_code error;
-  const asio::ip::address address =
-      asio::ip::make_address(options.listen_address == "localhost" ? "127.0.0.1" : options.listen_address, error);
-  if (error) {
-    throw std::runtime_error(
-        fmt::format("\"{}\" is not an address to listen on; give one such as 127.0.0.1", options.listen_address));
-  }
+  const asio::ip::address address = asio::ip::make_address(host.value_or(""), error);
+  if (!host || error)
+    throw std::runtime_error(fmt::format("\"{}\" {}", options.listen_address, protocol::kMustBeListenHost));
   if (!address.is_loopback()) {
     spdlog::warn("listening on {}: any program that reaches this address can command the robots; there is no password",
                  options.listen_address);
@@ -56,8 +56,8 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
   try {
     return tcp::acceptor(io, tcp::endpoint(address, options.port));
   } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another --port or --listen",
-                                         options.listen_address, options.port, failure.code().message()));
+    throw std::runtime_error(fmt::format("cannot listen on {}: {}; choose another --port or --listen",
+                                         protocol::to_text({*host, options.port}), failure.code().message()));
   }
 }
 

@@ -112,6 +112,11 @@ std::vector<std::string> list_of(const Option& option) {
   return words;
 }
 
+// Of a flag only other options follow, if it needs or excludes them.
+bool takes_value(const Option& option) {
+  return !option.type.empty() && !option.type.starts_with("Needs:") && !option.type.starts_with("Excludes:");
+}
+
 bool is_number(const Option& option) {
   return option.type.starts_with("FLOAT") || option.type.starts_with("INT") || option.type.starts_with("UINT");
 }
@@ -162,10 +167,10 @@ TEST_CASE("Every option of every program: a misspelt name, and a value that is m
       for (const Option& option : command.options) {
         std::string misspelt = option.name;
         std::swap(misspelt[misspelt.size() - 1], misspelt[misspelt.size() - 2]);
-        if (misspelt != option.name)
+        if (misspelt != option.name && option.name.size() > 5)  // shorter ones may be near another too
           check_refused(folder, command.words + " " + misspelt,
                         misspelt + ": no such option; did you mean " + option.name + "?");
-        if (!option.type.empty()) check_refused(folder, command.words + " " + option.name, option.name + ": needs ");
+        if (takes_value(option)) check_refused(folder, command.words + " " + option.name, option.name + ": needs ");
       }
     }
   }

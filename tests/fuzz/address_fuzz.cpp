@@ -1,5 +1,5 @@
-// Any text is HOST:PORT or is refused. What is accepted is read again as it is written, with brackets around any host;
-// an IPv4 address that the relay listens on, as the relay writes it.
+// Any text is HOST:PORT or is refused. What is accepted is read again as it is written, IPv6 with brackets and without;
+// an address that the relay listens on, as the relay writes it.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -23,7 +23,17 @@ void check_host_port(std::string_view text) {
   const auto parsed = protocol::parse_host_port(text);
   if (!parsed) return;
   require(sides && sides->host == parsed->host);
-  require(protocol::parse_host_port("[" + parsed->host + "]:" + std::to_string(parsed->port)) == parsed);
+  require(protocol::parse_host_port(protocol::to_text(*parsed)) == parsed);
+  if (protocol::is_ipv6(parsed->host))
+    require(protocol::parse_host_port("[" + parsed->host + "]:" + std::to_string(parsed->port)) == parsed);
+}
+
+void check_host(std::string_view text) {
+  const auto host = protocol::parse_host(text);
+  if (host)
+    require(!host->empty() && protocol::parse_host(*host) == host &&
+            protocol::parse_host("[" + *host + "]").has_value() == protocol::is_ipv6(*host));
+  if (const auto listened = protocol::parse_listen_host(text)) require(protocol::parse_host(*listened) == listened);
 }
 
 void check_address(std::string_view text) {
@@ -40,6 +50,7 @@ void check_address(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   check_host_port(text);
+  check_host(text);
   check_address(text);
   return 0;
 }

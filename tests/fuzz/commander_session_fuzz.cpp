@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   CommanderSession::TimePoint now{std::chrono::hours(1)};
   while (bytes.size > 0) {
     const std::uint8_t what = bytes.next();
-    port.sender = {0x7f000001, static_cast<std::uint16_t>(1 + what / 16 % 3)};
+    port.sender.port = static_cast<std::uint16_t>(1 + what / 16 % 3);
     const std::uint64_t id = 1 + bytes.next() % 4;
     const auto datagram = [&](const protocol::relay::Datagram& content) {
       session.on_datagram(content, port.sender, now);

@@ -15,7 +15,12 @@ using namespace std::chrono_literals;
 
 namespace {
 
-const Address kFirst{0x7f000001, 1111}, kSecond{0x7f000001, 2222};
+// 10.0.0.0 to 10.0.255.255
+Address numbered_address(int i) {
+  return parse_address("10.0." + std::to_string(i / 256) + "." + std::to_string(i % 256) + ":1111");
+}
+
+const Address kFirst = parse_address("127.0.0.1:1111"), kSecond = parse_address("127.0.0.1:2222");
 
 struct FakePort : SessionPort {
   void send(const Address& to, const protocol::relay::Datagram& datagram) override { sent.emplace_back(to, datagram); }
@@ -111,7 +116,7 @@ TEST_CASE_METHOD(Fixture, "Another commander is refused, and told who commands a
 TEST_CASE_METHOD(Fixture, "Strangers get a hundred answers a second in all, and the commander all of his") {
   const auto answers = [this](const auto& each) {
     const std::size_t before = port.sent.size();
-    for (int i = 0; i < 10000; ++i) each(Address{0x0a000000u + static_cast<std::uint32_t>(i), 1111});
+    for (int i = 0; i < 10000; ++i) each(numbered_address(i));
     return port.sent.size() - before;
   };
   CHECK(answers([this](const Address& stranger) { from(stranger, protocol::relay::Ping{99, 1}); }) == 100);

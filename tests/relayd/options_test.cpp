@@ -23,7 +23,7 @@ TEST_CASE("Without options: loopback only, the world server's usual port") {
   REQUIRE(options);
   CHECK(options->relay.world_server.host == "127.0.0.1");
   CHECK(options->relay.world_server.port == 3000);
-  CHECK(options->relay.listen == Address{0x7f000001, 45454});
+  CHECK(options->relay.listen == parse_address("127.0.0.1:45454"));
   CHECK(is_loopback(options->relay.listen));
   CHECK(options->relay.placement.class_name == "USARBot.Kenaf");
   CHECK_FALSE(options->relay.placement.pose);
@@ -94,9 +94,37 @@ TEST_CASE("Wrong options end with status 2, help with 0") {
   CHECK(status == 0);
 }
 
+TEST_CASE("An address of IPv6 is the same with brackets and without, and written with them") {
+  CHECK(to_text(parse_address("[::1]:45454")) == "[::1]:45454");
+  CHECK(parse_address("::1:45454") == parse_address("[::1]:45454"));
+  CHECK(is_loopback(parse_address("::1:1")));
+  CHECK_FALSE(is_ipv4(parse_address("::1:1")));
+  CHECK_FALSE(is_loopback(parse_address("[::]:1")));
+  CHECK(to_text(parse_address("[2001:DB8:0:0:0:0:0:1]:1")) == "[2001:db8::1]:1");
+  CHECK(parse_address("localhost:1") == parse_address("127.0.0.1:1"));
+  CHECK(is_loopback(parse_address("127.9.9.9:1")));
+  // IPv4 within IPv6 is the IPv4 address, as a socket of both families sees its peers
+  CHECK(parse_address("[::ffff:10.0.0.2]:1") == parse_address("10.0.0.2:1"));
+  CHECK(to_text(parse_address("[::ffff:10.0.0.2]:1")) == "10.0.0.2:1");
+}
+
+TEST_CASE("A zone is the interface's name or number") {
+  CHECK(to_text(parse_address("[fe80::1%1]:80")) == "[fe80::1%1]:80");
+  CHECK(parse_address("[fe80::1%lo]:80").zone != 0);
+  CHECK_THROWS_WITH(parse_address("[fe80::1%nosuch0]:80"), Catch::Contains("nosuch0"));
+}
+
+TEST_CASE("An address is the same for the system's calls and back") {
+  for (const char* text : {"127.0.0.1:80", "[::1]:80", "[fe80::1%1]:65535", "0.0.0.0:0"}) {
+    const Address address = parse_address(text);
+    CHECK(address_of(endpoint_of(address, AF_INET6).address) == address);
+    if (is_ipv4(address)) CHECK(address_of(endpoint_of(address, AF_INET).address) == address);
+  }
+}
+
 TEST_CASE("An address in use is named") {
   Address bound, second;
-  const Descriptor first = open_udp({0x7f000001, 0}, bound);
+  const Descriptor first = open_udp(parse_address("127.0.0.1:0"), bound);
   CHECK(bound.port != 0);
   CHECK_THROWS_WITH(open_udp(bound, second), Catch::Contains(to_text(bound)) && Catch::Contains("--listen"));
 }

@@ -8,6 +8,7 @@
 #include "tests/relayd/fake_commander.hpp"
 #include "tests/relayd/fake_world.hpp"
 #include "tests/relayd/running_relay.hpp"
+#include "tests/support/loopback.hpp"
 #include "tests/support/lossy_proxy.hpp"
 #include "tests/support/robot_command.hpp"
 
@@ -58,6 +59,20 @@ TEST_CASE("The relay places a robot, opens a session in lock step and carries co
   CHECK(states[49].robot.track_m[robot::kLeft] == Approx(49 * 0.002).margin(1e-9));
   CHECK(states[49].robot.p_WB_m[2] == Approx(0.1));  // z down on the wire
   CHECK(states[49].robot.posture_rad[1] == Approx(-0.2));
+}
+
+TEST_CASE("A relay on [::] serves commanders of IPv4 too, and names them by their IPv4 address") {
+  if (!has_ipv6_loopback()) {
+    WARN("skipped: this machine has no address ::1");
+    return;
+  }
+  FakeWorld world;
+  RunningRelay relay(world.port(), "[::]:0");
+  FakeCommander commander(relay.port(), 7);  // to 127.0.0.1
+  REQUIRE(is_welcome(commander.hello(true)));
+  CHECK(eventually([&] { return relay.log().count("127.0.0.1:") > 0; }));
+  CHECK(relay.log().count("listening on [::]:") == 1);
+  CHECK(relay.log().count("any program that reaches this address") == 1);
 }
 
 TEST_CASE("Loss, reordering and duplicates change nothing but latency") {

@@ -38,7 +38,8 @@ class LogCapture {
 
 class RunningRelay {
  public:
-  explicit RunningRelay(std::uint16_t world_port) : relay_(options(world_port)), thread_([this] { relay_.run(); }) {}
+  explicit RunningRelay(std::uint16_t world_port, const std::string& address = "127.0.0.1:0")
+      : relay_(options(world_port, address)), thread_([this] { relay_.run(); }) {}
   ~RunningRelay() { stop(); }
   std::uint16_t port() const { return relay_.address().port; }
   void stop() {
@@ -48,10 +49,10 @@ class RunningRelay {
   }
 
  private:
-  static relayd::RelayOptions options(std::uint16_t world_port) {
+  static relayd::RelayOptions options(std::uint16_t world_port, const std::string& address) {
     relayd::RelayOptions out;
     out.world_server = {"127.0.0.1", world_port};
-    out.listen = {0x7f000001, 0};
+    out.listen = relayd::parse_address(address);
     return out;
   }
   LogCapture log_;  // before the relay, so that it lives longer

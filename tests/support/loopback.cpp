@@ -17,6 +17,17 @@ sockaddr_in loopback(std::uint16_t port) {
   return address;
 }
 
+bool has_ipv6_loopback() {
+  const int descriptor = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in6 address{};
+  address.sin6_family = AF_INET6;
+  address.sin6_addr = in6addr_loopback;
+  const bool bound =
+      descriptor >= 0 && ::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  return bound;
+}
+
 int connect_to_loopback(std::uint16_t port, int receive_buffer_bytes) {
   const int descriptor = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const timeval limit{20, 0};

@@ -9,13 +9,14 @@ namespace kenaf::system_test {
 
 using support::Process;
 
-Chain::Chain(const std::string& speed, const std::string& world, bool has_cameras, const std::string& robot_class)
-    : speed_(speed), world_name_(world), has_cameras_(has_cameras) {
+Chain::Chain(const std::string& speed, const std::string& world, bool has_cameras, const std::string& robot_class,
+             const std::string& host)
+    : speed_(speed), world_name_(world), host_(host), has_cameras_(has_cameras) {
   start_world();
   const std::filesystem::path port_file = folder() / "relay.port";
   relay_ = std::make_unique<Process>(
       std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--world-server",
-                               "127.0.0.1:" + std::to_string(world_port_), "--listen", "127.0.0.1:0", "--port-file",
+                               host_ + ":" + std::to_string(world_port_), "--listen", host_ + ":0", "--port-file",
                                port_file.string(), "--class", robot_class},
       folder() / "relay.log");
   relay_port_ = support::wait_for_port(port_file, *relay_);
@@ -28,13 +29,13 @@ void Chain::start_world() {
   world_ = std::make_unique<Process>(
       std::vector<std::string>{KENAF_BIN_DIR "/kenaf-world", "--view", "off", "--cameras", has_cameras_ ? "on" : "off",
                                "--camera-port", "0", "--world", world_name_, "--speed", speed_, "--port",
-                               std::to_string(world_port_), "--port-file", port_file.string()},
+                               std::to_string(world_port_), "--listen", host_, "--port-file", port_file.string()},
       folder() / "world.log");
   world_port_ = support::wait_for_port(port_file, *world_);
 }
 
 Process Chain::start_program(const std::string& name, Environment environment) const {
-  environment.try_emplace("KENAF_RELAY", "127.0.0.1:" + std::to_string(relay_port_));
+  environment.try_emplace("KENAF_RELAY", host_ + ":" + std::to_string(relay_port_));
   environment.try_emplace("KENAF_CONFIG", "");  // no configuration of the machine's user
   return Process({KENAF_BIN_DIR "/" + name}, folder() / (name + ".log"), environment);
 }

@@ -17,9 +17,10 @@ using Environment = std::map<std::string, std::string>;
 
 class Chain {
  public:
-  // Starts both servers on ephemeral loopback ports; `speed` is kenaf-world's, `robot_class` the relay's.
+  // Starts both servers on ephemeral ports of `host`, a loopback address; `speed` is kenaf-world's, `robot_class` the
+  // relay's.
   explicit Chain(const std::string& speed, const std::string& world = "flat", bool has_cameras = false,
-                 const std::string& robot_class = "USARBot.Kenaf");
+                 const std::string& robot_class = "USARBot.Kenaf", const std::string& host = "127.0.0.1");
 
   // A user program that drives through this chain; `name` is a program of the build's bin folder.
   support::Process start_program(const std::string& name, Environment environment = {}) const;
@@ -37,7 +38,7 @@ class Chain {
 
  private:
   support::TemporaryFolder folder_;
-  std::string speed_, world_name_;
+  std::string speed_, world_name_, host_;
   bool has_cameras_;
   std::unique_ptr<support::Process> world_, relay_;
   std::uint16_t world_port_ = 0, relay_port_ = 0;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "tests/support/loopback.hpp"
 #include "tests/system/chain.hpp"
 
 using namespace kenaf;
@@ -64,6 +65,28 @@ TEST_CASE("The square closes, goes round its corners, and both servers end clean
 }
 
 // The program is told the robot's gauge, and nothing else of it.
+TEST_CASE("Over IPv6 the square is the same, to the last bit, with brackets around the address and without") {
+  if (!test::has_ipv6_loopback()) {
+    WARN("skipped: this machine has no address ::1");
+    return;
+  }
+  Chain chain("0");
+  const std::vector<Pose2> path = drive_square(chain);
+  for (const std::string host : {"::1", "[::1]"}) {
+    CAPTURE(host);
+    Chain chain6("0", "flat", false, "USARBot.Kenaf", host);
+    const std::vector<Pose2> path6 = drive_square(chain6);
+    REQUIRE(path6.size() == path.size());
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      REQUIRE(path6[i].x_m == path[i].x_m);
+      REQUIRE(path6[i].y_m == path[i].y_m);
+      REQUIRE(path6[i].yaw_rad == path[i].yaw_rad);
+    }
+    CHECK(chain6.log("relay").find("listening on [::1]:" + std::to_string(chain6.relay_port())) != std::string::npos);
+    CHECK(chain6.log("world").find("on [::1]:" + std::to_string(chain6.world_port())) != std::string::npos);
+  }
+}
+
 TEST_CASE("Robots on wheels drive the square too") {
   for (const auto& [robot_class, gauge_mm] : {std::pair{"USARBot.Husky", "555"}, {"USARBot.P3AT", "394"}}) {
     Chain chain("0", "flat", false, robot_class);

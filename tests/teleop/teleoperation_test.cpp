@@ -195,8 +195,8 @@ TEST_CASE("The control process survives garbage, a second console, and a killed 
   };
   REQUIRE(logged("console", "has the robot"));
 
-  const teleop::Peer to = teleop::resolve("127.0.0.1:" + std::to_string(desk.control_port()));
-  const teleop::UdpSocket thrower = teleop::UdpSocket::connected_to(to);
+  const teleop::Peer to = teleop::resolve_listener("127.0.0.1:" + std::to_string(desk.control_port()));
+  teleop::UdpSocket thrower = teleop::UdpSocket::connected_to({to});
   std::vector<std::byte> garbage(3000, std::byte{0x4b});
   for (std::size_t size = 0; size < garbage.size(); size += 7) thrower.send(std::span(garbage).first(size));
   REQUIRE(logged("control", "ignored"));

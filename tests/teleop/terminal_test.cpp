@@ -35,7 +35,8 @@ const std::string kProgram = KENAF_BIN_DIR "/operator_console";
 
 class ConsoleInTerminal {
  public:
-  explicit ConsoleInTerminal(const char* terminal = "xterm") : socket_(UdpSocket::bound_to(resolve("127.0.0.1:0"))) {
+  explicit ConsoleInTerminal(const char* terminal = "xterm")
+      : socket_(UdpSocket::bound_to(resolve_listener("127.0.0.1:0"))) {
     const std::string control = "127.0.0.1:" + std::to_string(socket_.port());
     winsize size{24, 80, 0, 0};
     int slave = -1;

@@ -58,10 +58,11 @@ TEST_CASE("Without a command, or with one that is not there, it says so and ends
 
 TEST_CASE("A mistyped word is named by the program, with where to look") {
   const TemporaryFolder folder;
-  for (const auto& [arguments, words] : {std::pair{"effects more", "not expected: more\nkenaf-gap effects --help"},
-                                         {"simulate --manoeuver drop --out o", "--manoeuver"},
-                                         {"simulate --out o", "--manoeuvre is required"},
-                                         {"compare o", "SIM is required"}}) {
+  for (const auto& [arguments, words] :
+       {std::pair{"effects more", "not expected: more\nkenaf-gap effects --help"},
+        {"simulate --manoeuver drop --out o", "--manoeuver: no such option; did you mean --manoeuvre?"},
+        {"simulate --out o", "--manoeuvre is required"},
+        {"compare o", "SIM is required"}}) {
     INFO(arguments);
     const Outcome outcome = kenaf_gap(folder, arguments);
     CHECK(outcome.status == 2);

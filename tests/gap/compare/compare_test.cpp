@@ -218,7 +218,7 @@ TEST_CASE("Bad input: status 2, the place in words, and nothing written") {
   CHECK_THAT(refused("real sim"), Catch::Contains("--out"));
   CHECK_THAT(refused("real --out out"), Catch::Contains("SIM is required"));
   CHECK_THAT(refused("real sim --out out --band -1"), Catch::Contains("--band"));
-  CHECK_THAT(refused("real sim --out out --start nan"), Catch::Contains("--start: \"nan\" is not a number from 0"));
+  CHECK_THAT(refused("real sim --out out --start nan"), Catch::Contains("--start nan: must be a number from 0"));
   write_file(folder / "sim/run-0.csv", "t_s,x_m,z_m\n0,0,0\n1,oops,0\n");
   CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim/run-0.csv:3:3: 'oops'"));
   write_file(folder / "sim/run-0.csv", "");

@@ -23,10 +23,12 @@ TEST_CASE("Camera options are read from words, and wrong ones refused in words")
     set_camera_image(options, name);
     CHECK(static_cast<int>(options.image_type) == number);
   }
-  CHECK_THROWS_WITH(set_cameras(options, "no"), "'no' is neither on nor off");
+  CHECK_THROWS_WITH(set_cameras(options, "no"), "must be on or off");
   for (const char* wrong : {"", "-1", "65536", "1x", "5003 "})
     CHECK_THROWS_AS(set_camera_port(options, wrong), std::runtime_error);
-  CHECK_THROWS_AS(set_camera_image(options, "best"), std::runtime_error);
+  CHECK_THROWS_WITH(set_camera_image(options, "best"), "must be raw, superb, good, normal, fair or bad");
+  CHECK_THROWS_WITH(set_camera_image(options, "gold"),
+                    "must be raw, superb, good, normal, fair or bad; did you mean good?");
 }
 
 TEST_CASE("Better types have higher quality, and good is the camera's own") {

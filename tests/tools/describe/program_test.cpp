@@ -68,7 +68,7 @@ TEST_CASE("Wrong input to kenaf-describe: exit status 2, what is wrong, and no f
                         {"from-urdf broken.urdf --out a", "broken.urdf: link \"left_wheel\" has a mass of -1 kg"},
                         {"from-urdf small.urdf --out a --set drive.speed=1", "no \"drive.speed\""},
                         {"from-urdf small.urdf --out a --set drive.max_force_n=-1", "would not load"},
-                        {"from-urdf small.urdf --out a --package small", "--package small: give NAME=FOLDER"},
+                        {"from-urdf small.urdf --out a --package small", "--package small: must be NAME=FOLDER"},
                         {"from-urdf small.urdf --out a --tolerance -1", "--tolerance"},
                         {"from-urdf small.urdf --out no/such/folder/a", "no/such/folder/a"},
                         {"to-urdf no-such-robot --out a", "no-such-robot"},
