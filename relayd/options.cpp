@@ -7,6 +7,7 @@
 
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
+#include "formats/description/description_file.hpp"
 
 namespace kenaf::relayd {
 
@@ -59,8 +60,14 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   bool is_embedded = false;
   auto* embedded_flag =
       app.add_flag("--embedded", is_embedded, "runs the world server inside this process")->excludes(server_option);
-  app.add_option("--world", embedded.world, "world of --embedded")->needs(embedded_flag)->capture_default_str();
-  app.add_option("--robot", embedded.robot, "robot of --embedded")->needs(embedded_flag)->capture_default_str();
+  app.add_option("--world", embedded.world, "world of --embedded")
+      ->needs(embedded_flag)
+      ->check(readable_by([](const std::string& text) { description::require_description("world", text, ".sdf"); }))
+      ->capture_default_str();
+  app.add_option("--robot", embedded.robot, "robot of --embedded")
+      ->needs(embedded_flag)
+      ->check(readable_by([](const std::string& text) { description::require_description("robot", text, ".toml"); }))
+      ->capture_default_str();
   app.add_option("--speed", embedded.speed, "speed of --embedded, in multiples of real time; 0: as fast as possible")
       ->needs(embedded_flag)
       ->check(command_line::number_in(0, 1e6))

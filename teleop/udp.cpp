@@ -42,7 +42,11 @@ std::string to_text(const Peer& peer) {
 }
 
 void require_host_port(const std::string& host_port) {
-  if (!protocol::split_host_port(host_port)) throw std::runtime_error(std::string(protocol::kMustBeHostPort));
+  const auto sides = protocol::split_host_port(host_port);
+  // a port in digits is checked, the name of a service is for the system
+  const bool in_digits = sides && sides->port.find_first_not_of("0123456789+-.") == std::string_view::npos;
+  if (!sides || (in_digits && !protocol::parse_host_port(host_port)))
+    throw std::runtime_error(std::string(protocol::kMustBeHostPort));
 }
 
 std::vector<Peer> resolve(const std::string& host_port) {

@@ -14,6 +14,7 @@
 #include "can/candrives/service.hpp"
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
+#include "formats/description/description_file.hpp"
 
 namespace {
 
@@ -56,7 +57,9 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
       "kenaf-candrives");
   app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
   app.add_option("--robot", options.motors.robot, "Robot: a shipped name or a TOML file with a [can] table")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(command_line::readable_by(
+          [](const std::string& text) { description::require_description("robot", text, ".toml"); }));
   candrives::add_motor_options(app, options.motors);
   app.add_option("--fault", options.faults, kFaultHelp)->take_all();
   if (const auto status = command_line::parse(app, argc, argv)) {

@@ -3,13 +3,17 @@
 #include "can/candrives/path_log.hpp"
 #include "can/candrives/robot_plant.hpp"
 #include "command_line/checks.hpp"
+#include "formats/description/description_file.hpp"
 
 namespace kenaf::candrives {
 
 void add_motor_options(CLI::App& app, MotorOptions& options) {
   // Ideal motors exclude the options of the physics.
   options.time_step_s = physics::PhysicsSettings{}.time_step_s;
-  auto* world = app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
+  auto* world = app.add_option("--world", options.world, "World: a shipped name or an SDF file")
+                    ->capture_default_str()
+                    ->check(command_line::readable_by(
+                        [](const std::string& text) { description::require_description("world", text, ".sdf"); }));
   auto* ideal = app.add_flag("--ideal", options.ideal,
                              "No physics: motors that follow exactly, tracks that never slip, level ground")
                     ->excludes(world);

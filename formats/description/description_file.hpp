@@ -19,4 +19,8 @@ struct DescriptionFile {
 DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
                                       std::string_view extension);
 
+// For options, before anything is read: throws DescriptionError, "must be the path of a file that ends in .sdf, or one
+// of flat, ...; did you mean flat?", if the text is neither the name of a shipped description nor a path.
+void require_description(std::string_view kind, const std::string& name_or_path, std::string_view extension);
+
 }  // namespace kenaf::description

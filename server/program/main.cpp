@@ -9,6 +9,7 @@
 
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
+#include "formats/description/description_file.hpp"
 #include "formats/protocol/host_port.hpp"
 #include "formats/runs/port_file.hpp"
 #include "server/image_server/served_cameras.hpp"
@@ -23,11 +24,16 @@ int main(int argc, char** argv) {
               camera_port = "5003", camera_image = "good";
   CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each.",
                "kenaf-world"};
-  app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
+  app.add_option("--world", options.world, "World: a shipped name or an SDF file")
+      ->capture_default_str()
+      ->check(
+          readable_by([](const std::string& text) { kenaf::description::require_description("world", text, ".sdf"); }));
   app.add_option("--robot", options.robot,
                  "Robot of the class USARBot.Kenaf: a shipped name or a TOML file. Other classes, such as "
                  "USARBot.P2AT, keep their shipped descriptions")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(readable_by(
+          [](const std::string& text) { kenaf::description::require_description("robot", text, ".toml"); }));
   app.add_option("--port", options.port, "TCP port; 0: any free one, which is printed")
       ->capture_default_str()
       ->check(command_line::whole_number(0, 65535));
