@@ -9,6 +9,8 @@ export function createQuestion(beforeAsking) {
   let act = null, arming = 0;
 
   dialog.addEventListener("close", () => { act = null; clearTimeout(arming); });
+  // beside the buttons a press takes the focus from neither
+  dialog.addEventListener("mousedown", (event) => { if (!event.target.closest("button")) event.preventDefault(); });
   by("question-no").addEventListener("click", () => dialog.close());
   yes.addEventListener("click", () => {
     const carryOut = act;
