@@ -21,6 +21,9 @@ using Clock = std::chrono::steady_clock;
 
 // An answer is held for less than the 2 s after which a world server stops waiting in lock step.
 constexpr auto kLongestHold = std::chrono::seconds(1);
+// A cycle of a robot that does not wait is answered without the program's calls if one has the mutex for longer:
+// chosen, a fiftieth of a period of 10 ms, and a hundred times what a call needs.
+constexpr auto kLongestLock = std::chrono::microseconds(200);
 // Period at which a hold checks the program: a fast program is never checked.
 constexpr auto kLookEvery = std::chrono::milliseconds(5);
 // A motion reuses the goal heading of the previous motion if the robot is within this angle of it.
@@ -29,6 +32,9 @@ constexpr double kSameHeading_rad = 2 * std::numbers::pi / 180;
 constexpr double kFlipperArrived_rad = 2 * std::numbers::pi / 180;
 // Cycle times are sums of periods: a wait for ten of them must not miss the tenth by rounding.
 constexpr double kCycleRounding = 1e-3;
+
+// Room from the start; more needs an allocation in a cycle.
+constexpr std::size_t kMostWarning = 2048, kMostDue = 256;
 
 constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
 
@@ -55,6 +61,9 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     estimate_ = estimator_.update(*first);
     warning_ = transport_->warning();
     last_call_t_s_ = estimate_.t_s;
+    // no cycle allocates: warnings, and threads that are waited for, find room
+    warning_.reserve(kMostWarning);
+    due_.reserve(kMostDue);
     due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
     if (recorder_) recorder_->add(*first, in_force_, estimate_.t_s);
@@ -122,12 +131,14 @@ void Robot::wait_flippers(double tolerance_rad, double timeout_s) {
   const double deadline_s = estimate_.t_s + timeout_s;
   Call call{
       .kind = Kind::flippers, .step = [&]() -> std::optional<Verdict> {
+        bool all_there = true;
+        for (std::size_t i = 0; i < robot::kFlipperCount; ++i) all_there &= !flipper_is_off(i, tolerance_rad);
+        if (all_there) return Verdict{HRT_OK, {}};
+        if (estimate_.t_s < deadline_s) return std::nullopt;
         std::string late;
         for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
           if (flipper_is_off(i, tolerance_rad)) late += std::string(late.empty() ? "" : ", ") + kFlipperNames[i];
         }
-        if (late.empty()) return Verdict{HRT_OK, {}};
-        if (estimate_.t_s < deadline_s) return std::nullopt;
         return Verdict{HRT_E_TIMEOUT, fmt::format("hrt_wait_flippers: not reached within {} s: {}", timeout_s, late)};
       }};
   run_call(call, lock);
@@ -407,17 +418,16 @@ void Robot::fail(int code, const std::string& text) {
 }
 
 std::optional<robot::Command> Robot::answer(const robot::State& state) {
-  std::unique_lock lock(mutex_);
-  if (closing_) return std::nullopt;     // this state overtook the interrupt
-  if (state.frame != estimate_.frame) {  // the constructor has taken the first one
-    lost_cycles_ += state.frame - estimate_.frame - 1;
-    measured_ = state;
-    measured_at_ = Clock::now();
-    in_force_ = command_;
-    estimate_ = estimator_.update(state);
-    warning_ = transport_->warning();
-    if (recorder_) recorder_->add(state, in_force_, estimate_.t_s);
+  std::unique_lock lock(mutex_, std::defer_lock);
+  if (connection_.lockstep) {
+    lock.lock();
+  } else if (!lock_soon(lock)) {
+    return answer_without_calls(state);
   }
+  if (closing_) return std::nullopt;  // this state overtook the interrupt
+  for (std::size_t i = 0; i < untaken_count_; ++i) take(untaken_[i].state, untaken_[i].in_force);
+  untaken_count_ = 0;
+  take(state, sent_);
   step_calls();
   if (connection_.lockstep) {
     hold(lock);
@@ -426,7 +436,41 @@ std::optional<robot::Command> Robot::answer(const robot::State& state) {
     due_.clear();  // no call is waited for
   }
   compose_command();
-  return command_;
+  composed_frame_ = state.frame;
+  composed_silence_s_ = estimate_.t_s - last_call_t_s_;
+  return sent_ = command_;
+}
+
+// Without a sleep: to be woken costs more than the microseconds for which a call has the mutex.
+bool Robot::lock_soon(std::unique_lock<std::mutex>& lock) const {
+  const Clock::time_point latest = Clock::now() + kLongestLock;
+  while (!lock.try_lock()) {
+    if (Clock::now() > latest) return false;
+  }
+  return true;
+}
+
+// The previous command stays in force, but one to the tracks no longer than after the program's last call.
+robot::Command Robot::answer_without_calls(const robot::State& state) {
+  if (untaken_count_ == kMostUntaken) {
+    std::ranges::move(untaken_.begin() + 1, untaken_.end(), untaken_.begin());
+    --untaken_count_;
+  }
+  untaken_[untaken_count_++] = {state, sent_};
+  const double silent_s = composed_silence_s_ + (state.frame - composed_frame_) * connection_.period_s;
+  if (silent_s > config_.command_timeout_s + kCycleRounding * connection_.period_s) sent_.track_speed_mps = {};
+  return sent_;
+}
+
+void Robot::take(const robot::State& state, const robot::Command& in_force) {
+  if (state.frame == estimate_.frame) return;  // the constructor has taken the first one
+  lost_cycles_ += state.frame - estimate_.frame - 1;
+  measured_ = state;
+  measured_at_ = Clock::now();
+  in_force_ = in_force;
+  estimate_ = estimator_.update(state);
+  warning_ = transport_->warning();
+  if (recorder_) recorder_->add(state, in_force_, estimate_.t_s);
 }
 
 void Robot::step_calls() {

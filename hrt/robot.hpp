@@ -3,10 +3,17 @@
 //
 // One cycle: take the state, step the motion and the waiting calls, hold the answer while a program whose call has just
 // ended is due to make its next one (lock step only), send the answer.
+//
+// Motions and waiting calls are stepped by the cycle, in the state that the program's calls change; one mutex guards
+// both. A real-time cycle must not wait for a program, though: its thread may lose its processor while it has the
+// mutex. So a robot that does not wait is answered by the previous command where the mutex does not become free in
+// time; the state is taken in with the next one, and nothing but the moment of a new command is lost. A slot for values
+// between the two, without a mutex, would split each call into two halves that must agree about every ending.
 #pragma once
 
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -79,6 +86,9 @@ class Robot {
   // time does not follow the wall clock.
   std::optional<double> robot_time_at(std::chrono::steady_clock::time_point moment) const;
 
+  // For tests: as the call of a program whose thread loses its processor while it has the mutex.
+  [[nodiscard]] std::unique_lock<std::mutex> hold_mutex() { return std::unique_lock(mutex_); }
+
   // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the current cycle. Throws if the
   // recording is incomplete.
   void close();
@@ -112,6 +122,9 @@ class Robot {
   void begin_thread(const robot::State& first);  // throws what begin_cycles() of the transport throws
   void run(robot::State state);
   std::optional<robot::Command> answer(const robot::State& state);  // nullopt: closed before
+  bool lock_soon(std::unique_lock<std::mutex>& lock) const;
+  robot::Command answer_without_calls(const robot::State& state);
+  void take(const robot::State& state, const robot::Command& in_force);
   void step_calls();
   void hold(std::unique_lock<std::mutex>& lock);
   void look_at_due();
@@ -143,7 +156,7 @@ class Robot {
   std::uint64_t lost_cycles_ = 0;
   std::string warning_;
   robot::Command command_;   // the newest answer, in force from the next cycle on
-  robot::Command in_force_;  // the previous answer: in force since measured_
+  robot::Command in_force_;  // what was sent before: in force since measured_
   std::array<double, robot::kTrackCount> user_track_mps_{};
   bool stopped_by_silence_ = false;  // silence has set them to 0, and no speed was requested since
   std::array<double, robot::kTrackCount> motion_track_mps_{};
@@ -153,6 +166,19 @@ class Robot {
   std::vector<Call*> calls_;  // the waiting ones
   std::vector<Due> due_;
   std::unique_ptr<Recorder> recorder_;
+
+  // ---- of the cycle thread alone ----
+  // States that came while the mutex was not free; if there are more, the oldest ones are lost cycles.
+  static constexpr std::size_t kMostUntaken = 64;
+  struct Untaken {
+    robot::State state;
+    robot::Command in_force;
+  };
+  std::array<Untaken, kMostUntaken> untaken_{};
+  std::size_t untaken_count_ = 0;
+  robot::Command sent_;               // the newest answer
+  std::uint32_t composed_frame_ = 0;  // the frame whose answer was composed last
+  double composed_silence_s_ = 0;     // and how long the program had not called then
 
   std::mutex close_mutex_;   // one close at a time
   std::mutex record_mutex_;  // one recording starts or ends at a time; locked before mutex_, never by the cycle thread

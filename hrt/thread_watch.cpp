@@ -34,7 +34,9 @@ std::optional<ThreadLook> read_thread_stat(std::string_view stat) {
 }
 
 std::optional<ThreadLook> look_at_thread(pid_t thread) {
-  const int file = open(fmt::format("/proc/self/task/{}/stat", thread).c_str(), O_RDONLY | O_CLOEXEC);
+  std::array<char, 64> path{};  // in a cycle, so without allocating
+  fmt::format_to_n(path.data(), path.size() - 1, "/proc/self/task/{}/stat", thread);
+  const int file = open(path.data(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return std::nullopt;
   std::array<char, 1024> text;
   const ssize_t size = read(file, text.data(), text.size());

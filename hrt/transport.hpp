@@ -49,8 +49,11 @@ class Transport {
   virtual void close() = 0;
 
   // Describes what the robot runs without; "" if nothing is missing. As of the newest state; for the thread that calls
-  // wait_state.
-  virtual std::string warning() const { return {}; }
+  // wait_state, and valid until its next call. Called in each cycle: does not allocate.
+  virtual const std::string& warning() const {
+    static const std::string nothing;
+    return nothing;
+  }
 
   // Describes what open() has found and set up, in lines without a last line end; "" if there is nothing to say.
   virtual std::string setup() const { return {}; }

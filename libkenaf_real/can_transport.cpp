@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -49,6 +50,37 @@ std::string joined(const std::string& one, const std::string& other) {
   return one + (one.empty() || other.empty() ? "" : "; ") + other;
 }
 
+// The warnings of all cases, since no cycle is to allocate: what the start has found, with and without a silent sensor.
+using Warnings = std::array<std::string, 3>;  // by MeasuredState::Silence
+Warnings warnings_with(const std::string& of_start, const canbus::RobotBus& robot) {
+  const auto silent = [&](canopen::NodeId node, std::string_view name) {
+    return joined(fmt::format("{} is silent: no posture, and the heading is that of the tracks",
+                              to_string(NamedNode{node, name})),
+                  of_start);
+  };
+  if (!robot.inclinometer || !robot.gyro) return {of_start, of_start, of_start};
+  return {of_start, silent(robot.inclinometer->node, "inclinometer"), silent(robot.gyro->node, "gyro")};
+}
+
+std::size_t doubted_drives(const ProcessImage& image, const canbus::RobotBus& robot) {
+  std::size_t doubted = 0;
+  for (std::size_t i = 0; i < robot.drives.size(); ++i) doubted += image.drive(i).velocity_doubted ? 1 : 0;
+  return doubted;
+}
+
+std::string doubts_in_words(const ProcessImage& image, const canbus::RobotBus& robot) {
+  std::string words;
+  for (std::size_t i = 0; i < robot.drives.size(); ++i) {
+    if (!image.drive(i).velocity_doubted) continue;
+    words =
+        joined(words, fmt::format("{}: its velocity (object 0x606C) runs against its position, whose change is "
+                                  "taken{}",
+                                  to_string(drive_node(robot, i)),
+                                  canbus::advice(robot.drives[i].device, "velocity = \"magnitude\" (or \"16 bits\")")));
+  }
+  return words;
+}
+
 }  // namespace
 
 struct CanTransport::Session {
@@ -64,7 +96,10 @@ struct CanTransport::Session {
   std::unique_ptr<canopen::Bus> bus;
   Master master;
   BusCycle cycle;
-  std::string setup, set_up_warning;  // for people; "": nothing
+  std::string setup;  // for people
+  std::string warning_of_start;
+  std::size_t doubted = 0;  // drives whose velocity cannot be what it says
+  Warnings warnings;
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   // beats and late orders during the opening: reported with the first state after it
@@ -95,8 +130,9 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
   power_up(s.cycle);
   begin_event_timers(s.cycle, facts.watches, s.period_s);
   s.setup = describe_watches(s.robot, facts.watches, s.period_s) + "\n" + describe_real_time(s.robot);
-  s.set_up_warning =
+  s.warning_of_start =
       joined(warning_of_gauge(s.robot, config.track_gauge_mm), warning_of_watches(s.robot, facts.watches));
+  s.warnings = warnings_with(s.warning_of_start, s.robot);
   s.measured.emplace(s.robot, facts, s.period_s);
   s.targets.emplace(s.robot, s.cycle.image());
   s.lost = false;
@@ -150,6 +186,11 @@ std::optional<robot::State> CanTransport::measure() {
       lose(s.cycle, *drive);
     }
     s.round_trip_s = s.cycle.round_trip_s();
+    // the only cycles that allocate: those in which a drive's velocity turns out to be wrong, one for each such drive
+    if (const std::size_t doubted = doubted_drives(s.cycle.image(), s.robot); doubted != s.doubted) {
+      s.doubted = doubted;
+      s.warnings = warnings_with(joined(doubts_in_words(s.cycle.image(), s.robot), s.warning_of_start), s.robot);
+    }
     return s.measured->update(s.cycle, *beat);
   });
 }
@@ -191,9 +232,9 @@ void CanTransport::close() {
   if (not_stopped) throw *not_stopped;
 }
 
-std::string CanTransport::warning() const {
-  if (!session_ || !session_->measured) return {};
-  return joined(session_->measured->warning(), session_->set_up_warning);
+const std::string& CanTransport::warning() const {
+  if (!session_ || !session_->measured) return Transport::warning();
+  return session_->warnings[static_cast<std::size_t>(session_->measured->silence())];
 }
 
 std::string CanTransport::setup() const {

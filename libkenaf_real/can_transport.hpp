@@ -33,7 +33,7 @@ class CanTransport final : public hrt::Transport {
   void send(const robot::Command& command) override;
   void interrupt() override;
   void close() override;
-  std::string warning() const override;
+  const std::string& warning() const override;
   std::string setup() const override;
   double round_trip_s() const override;
   bool is_paused() const override { return false; }

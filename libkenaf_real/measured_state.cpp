@@ -1,8 +1,6 @@
 #include "libkenaf_real/measured_state.hpp"
 #include "robot/state.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -57,15 +55,7 @@ robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
       state.track_a[drive.side] += current_a;
     }
   }
-  const ProcessImage& image = cycle.image();
-  doubts_.clear();
-  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
-    if (!image.drive(i).velocity_doubted) continue;
-    doubts_ += fmt::format("{}{}: its velocity (object 0x606C) runs against its position, whose change is taken{}",
-                           doubts_.empty() ? "" : "; ", to_string(drive_node(bus_, i)),
-                           canbus::advice(bus_.drives[i].device, "velocity = \"magnitude\" (or \"16 bits\")"));
-  }
-  if (const std::optional<double> battery_v = image.battery_v()) {
+  if (const std::optional<double> battery_v = cycle.image().battery_v()) {
     state.battery_v = *battery_v;
     state.fields |= robot::kHasBattery;
   }
@@ -88,13 +78,10 @@ void MeasuredState::add_to_side(std::size_t i, const DriveInput& input, robot::S
 }
 
 void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state) {
-  warning_.clear();
+  silence_ = Silence::none;
   if (!bus_.inclinometer || !bus_.gyro) return;
   if (cycle.slope_is_silent() || cycle.gyro_is_silent()) {
-    const bool slope = cycle.slope_is_silent();
-    const NamedNode node =
-        slope ? NamedNode{bus_.inclinometer->node, "inclinometer"} : NamedNode{bus_.gyro->node, "gyro"};
-    warning_ = fmt::format("{} is silent: no posture, and the heading is that of the tracks", to_string(node));
+    silence_ = cycle.slope_is_silent() ? Silence::inclinometer : Silence::gyro;
     unseen_s_ += elapsed_s;
     return;
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "can/canbus/robot_bus.hpp"
@@ -18,11 +17,12 @@ class MeasuredState {
  public:
   MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s);
 
-  // Updates for one beat. No posture (kHasPosture) while inclinometer or gyro are silent or absent; warning() reports
-  // it. After a short silence the heading catches up with the first rate measured after it.
+  // Updates for one beat, without allocating. No posture (kHasPosture) while inclinometer or gyro are silent or absent;
+  // silence() names the one that is silent. After a short silence the heading catches up with the first rate measured
+  // after it.
   robot::State update(const BusCycle& cycle, const Beat& beat);
-  // Also of drives whose velocity cannot be what it says.
-  std::string warning() const { return warning_ + (warning_.empty() || doubts_.empty() ? "" : "; ") + doubts_; }
+  enum class Silence : std::uint8_t { none, inclinometer, gyro };
+  Silence silence() const { return silence_; }
 
  private:
   void add_to_side(std::size_t drive, const DriveInput& input, robot::State& state);
@@ -39,7 +39,7 @@ class MeasuredState {
   std::vector<Travel> travels_;  // of each drive; not used for flippers
   Heading heading_;
   double unseen_s_ = 0;  // time without inclinometer or gyro that the heading does not cover yet
-  std::string warning_, doubts_;
+  Silence silence_ = Silence::none;
 };
 
 }  // namespace kenaf::real

@@ -289,10 +289,11 @@ void RelayTransport::ping(Clock::time_point now) {
   transmit(protocol::relay::Ping{.session = session_, .id = ping_id_});
 }
 
-std::string RelayTransport::warning() const {
-  if (!not_at_start_) return {};
-  return "the robot does not begin at the world's first start pose, which was not free, but at the next free one; "
-         "another robot stands there";
+const std::string& RelayTransport::warning() const {
+  static const std::string displaced =
+      "the robot does not begin at the world's first start pose, which was not free, but at the next free one; "
+      "another robot stands there";
+  return not_at_start_ ? displaced : Transport::warning();
 }
 
 void RelayTransport::close() {

@@ -30,7 +30,7 @@ class RelayTransport final : public hrt::Transport {
   void keep_alive() override;
   void interrupt() override;
   void close() override;
-  std::string warning() const override;
+  const std::string& warning() const override;
   double round_trip_s() const override { return round_trip_s_; }
   bool is_paused() const override { return is_paused_; }
 

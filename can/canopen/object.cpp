@@ -33,7 +33,7 @@ bool is_signed(ObjectType type) {
   return type == ObjectType::integer8 || type == ObjectType::integer16 || type == ObjectType::integer32;
 }
 
-ObjectBytes encode_number(ObjectType type, std::int64_t value) {
+std::size_t write_number(ObjectType type, std::int64_t value, std::span<std::uint8_t> to) {
   const std::size_t bytes = byte_count(type);
   const std::int64_t span = std::int64_t{1} << 8 * bytes;
   const std::int64_t min = is_signed(type) ? -span / 2 : 0;
@@ -41,8 +41,13 @@ ObjectBytes encode_number(ObjectType type, std::int64_t value) {
   if (value < min || value > max)
     throw std::out_of_range(fmt::format("{} does not fit in {} bits {} sign ({} to {})", value, 8 * bytes,
                                         is_signed(type) ? "with" : "without", min, max));
-  ObjectBytes encoded(bytes);
-  put(encoded, 0, bytes, static_cast<std::uint32_t>(value));
+  put(to, 0, bytes, static_cast<std::uint32_t>(value));
+  return bytes;
+}
+
+ObjectBytes encode_number(ObjectType type, std::int64_t value) {
+  ObjectBytes encoded(byte_count(type));
+  write_number(type, value, encoded);
   return encoded;
 }
 

@@ -25,6 +25,8 @@ using ObjectBytes = std::vector<std::uint8_t>;  // little-endian
 // Encodes a number in the type's bytes. Throws std::out_of_range, with type and value, if it does not fit; not for
 // text.
 ObjectBytes encode_number(ObjectType type, std::int64_t value);
+// The same into the first bytes of `to`, without allocating; returns their count.
+std::size_t write_number(ObjectType type, std::int64_t value, std::span<std::uint8_t> to);
 // Decodes a number; the caller must check that there are byte_count(type) bytes.
 std::int64_t decode_number(ObjectType type, std::span<const std::uint8_t> bytes);
 

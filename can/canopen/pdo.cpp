@@ -21,12 +21,12 @@ std::uint8_t byte_count(const Pdo& pdo) {
 }
 
 Frame pack(const Pdo& pdo, NodeId node, std::span<const std::int64_t> values) {
-  ObjectBytes data;
-  for (std::size_t i = 0; i < pdo.objects.size(); ++i) {
-    const ObjectBytes value = encode_number(pdo.objects[i].type, values[i]);
-    data.insert(data.end(), value.begin(), value.end());
-  }
-  return make_frame(cob_id(pdo, node), data);
+  // in the control loop, so without allocating
+  Frame frame{.id = cob_id(pdo, node), .length = byte_count(pdo)};
+  std::span<std::uint8_t> rest = std::span(frame.data).first(frame.length);
+  for (std::size_t i = 0; i < pdo.objects.size(); ++i)
+    rest = rest.subspan(write_number(pdo.objects[i].type, values[i], rest));
+  return frame;
 }
 
 bool unpack(const Pdo& pdo, const Frame& frame, std::span<std::int64_t> values) {

@@ -21,6 +21,7 @@
 #include "hrt/robot.hpp"
 #include "kenaf/hrt.h"
 #include "tests/hrt/fake_transport.hpp"
+#include "tests/support/patience.hpp"
 #include "tests/support/process.hpp"
 
 using namespace kenaf::hrt::test;
@@ -397,6 +398,50 @@ TEST_CASE("Flippers that do not arrive are named, and hrt_stop leaves them where
   // 1.5 rad/s for the 0.1 s that the flippers moved, and for the cycle whose answer hrt_stop() came too late for.
   CHECK(state.commanded_flipper_deg[1] == Approx(0.1 * 1.5 / kDegree).margin(1));
   CHECK(state.commanded_flipper_deg[0] == 0);
+}
+
+TEST_CASE("A call that is held up with the mutex holds up no cycle, and no command outlasts command_timeout_s") {
+  const kenaf::support::TemporaryFolder folder;
+  const std::string file = (folder.path() / "run.csv").string();
+  const auto fake = use_fake_robot();
+  fake->lockstep = false;
+  fake->paused_after = 10;
+  kenaf::hrt::Robot robot(kenaf::hrt::make_transport(), hrt_config_default());  // command_timeout_s: 10 cycles
+  // Lets the robot go on to this frame, and waits until that is answered: commands[i] answers frame i + 1.
+  const auto run_to = [&](std::uint32_t frame) {
+    {
+      const std::lock_guard lock(fake->mutex);
+      fake->paused_after = frame;
+    }
+    fake->changed.notify_all();
+    REQUIRE(kenaf::support::eventually([&] {
+      const std::lock_guard lock(fake->mutex);
+      return fake->commands.size() == frame;
+    }));
+  };
+  run_to(10);
+  robot.record_start(file);
+  robot.set_tracks(0.1, 0.1);
+  run_to(15);
+  {
+    const auto held = robot.hold_mutex();
+    run_to(55);
+  }
+  run_to(60);
+  robot.record_stop();
+  robot.close();
+
+  // commanded in frame 10, in the answers from 11 on; 16 to 20 repeat it, and then its 10 cycles are over
+  for (std::size_t frame = 11; frame <= 20; ++frame) CHECK(fake->commands[frame - 1].track_speed_mps[0] == 0.1);
+  for (std::size_t frame = 21; frame <= 60; ++frame) CHECK(fake->commands[frame - 1].track_speed_mps[0] == 0);
+  // every state was taken in afterwards, with the command that was in force
+  const kenaf::runs::Run run = kenaf::runs::read_run(file);
+  const auto frame = run.column("frame"), commanded = run.column("cmd_track_left_mps");
+  REQUIRE(run.row_count() == 51);
+  for (std::size_t row = 0; row < run.row_count(); ++row) {
+    CHECK(frame[row] == static_cast<double>(10 + row));
+    CHECK(commanded[row] == fake->commands[8 + row].track_speed_mps[0]);
+  }
 }
 
 TEST_CASE("Lost cycles are counted") {

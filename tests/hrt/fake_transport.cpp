@@ -57,6 +57,9 @@ std::optional<robot::State> FakeTransport::wait_state() {
     else
       robot_->changed.wait(lock, may_go_on);
   }
+  robot_->changed.wait(lock, [&] {
+    return robot_->interrupted || robot_->paused_after == 0 || robot_->plant.state.frame < robot_->paused_after;
+  });
   if (robot_->interrupted && (!answered_ || robot_->late_interrupts-- <= 0)) return std::nullopt;
   if (first_) {
     first_ = false;

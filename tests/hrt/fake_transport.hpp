@@ -25,6 +25,7 @@ struct FakeRobot {
   std::uint32_t skipped_frame = 0;   // this one never arrives; 0: none
   std::uint32_t reset_at_frame = 0;  // the world is reset: its clock begins anew with this one; 0: never
   int late_interrupts = 0;           // so many states are faster than an interrupt
+  std::uint32_t paused_after = 0;    // no frame comes after this one; 0: they all do
   bool runs_alone = false;           // not lock step: frames also come without answers, one each millisecond
 
   std::mutex mutex;
