@@ -226,7 +226,12 @@ void Robot::run_call(Call& call, std::unique_lock<std::mutex>& lock) {
   calls_.push_back(&call);
   std::erase_if(due_, [&](const Due& due) { return due.thread == call.owner; });
   program_acted_.notify_one();
-  call_ended_.wait(lock, [&] { return call.verdict.has_value(); });
+  while (!call.verdict) {
+    const std::uint32_t seen = calls_ended_;  // verdicts come under the lock: none is missed
+    lock.unlock();
+    calls_ended_.wait(seen);
+    lock.lock();
+  }
   if (call.verdict->code != HRT_OK) throw Error(call.verdict->code, call.verdict->text);
 }
 
@@ -236,7 +241,12 @@ void Robot::end_calls(const std::function<bool(const Call&)>& which, int code, c
     call->verdict = Verdict{code, text};
     return true;
   });
-  call_ended_.notify_all();
+  wake_calls();
+}
+
+void Robot::wake_calls() {
+  ++calls_ended_;
+  calls_ended_.notify_all();
 }
 
 // ---- Calls that do not block ----
@@ -487,7 +497,7 @@ void Robot::step_calls() {
   });
   if (ended) {
     last_call_t_s_ = estimate_.t_s;
-    call_ended_.notify_all();
+    wake_calls();
   }
 }
 

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -116,6 +117,7 @@ class Robot {
   };
   template <typename Motion>
   void run_motion(Motion motion, double heading_rad, std::unique_lock<std::mutex>& lock);
+  void wake_calls();
   void run_call(Call& call, std::unique_lock<std::mutex>& lock);
   void end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text);
 
@@ -145,8 +147,11 @@ class Robot {
   Connection connection_{};
   std::string setup_;  // of the opening, constant afterwards
 
-  mutable std::mutex mutex_;  // guards all members below
-  std::condition_variable call_ended_, program_acted_;
+  mutable std::mutex mutex_;               // guards all members below
+  std::condition_variable program_acted_;  // waited for in lock step only
+  // Changes when calls end, and their threads sleep on it. No condition variable: to wake by one may wait for threads
+  // that it has woken before and that have had no processor since (glibc's wait for its older group).
+  std::atomic<std::uint32_t> calls_ended_ = 0;
   std::optional<Failure> failure_;  // link lost or closed: set once
   bool closing_ = false;
   robot::State measured_{};
