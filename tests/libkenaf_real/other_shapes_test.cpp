@@ -4,6 +4,7 @@
 // 2. Several drives of a side get one speed; travel and speed are the mean of theirs, the current is their sum.
 // 3. Drives and sensors that the description does not name get no frame of their own, are not waited for, and stay as
 //    they were; what they send changes nothing.
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -95,20 +96,24 @@ TEST_CASE("A side's travel and speed are the mean of its drives'") {
   robot.open();
   const double counts_per_m = std::abs(robot.description.drives.front().units.counts_per_unit);
   const robot::State before = robot.run(3, robot::Command{});
-  // as if the second left motor had gone 0.1 m forward, which its direction makes negative, at 0.4 m/s
+  // as if the second left motor went 0.1 m forward, 2 mm a cycle, which its direction makes negative
+  double gone_m = 0;
   robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
     if (sender != Sender::slaves) return true;
     const auto add = [&](std::size_t at, double m) {
       const auto shifted = canopen::get_signed(frame.data, at, 4) - std::lround(m * counts_per_m);
       canopen::put(frame.data, at, 4, static_cast<std::uint32_t>(shifted));
     };
-    if (frame.id == 0x189) add(2, 0.1);
-    if (frame.id == 0x289) add(0, 0.4);
+    if (frame.id == 0x189) {
+      gone_m = std::min(gone_m + 0.002, 0.1);
+      add(2, gone_m);
+    }
+    if (frame.id == 0x289) add(0, 0.2);
     return true;
   };
-  const robot::State after = robot.run(3, robot::Command{});
+  const robot::State after = robot.run(60, robot::Command{});
   CHECK(after.track_m[robot::kLeft] - before.track_m[robot::kLeft] == Approx(0.05).margin(1e-5));
-  CHECK(after.track_mps[robot::kLeft] == Approx(0.2).margin(1e-4));
+  CHECK(after.track_mps[robot::kLeft] == Approx(0.1).margin(1e-4));
   CHECK(after.track_m[robot::kRight] == before.track_m[robot::kRight]);
   CHECK(after.track_mps[robot::kRight] == 0);
 }
