@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf" COMPONENT development)
-install(DIRECTORY share/robots share/worlds share/manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf" COMPONENT data
+install(DIRECTORY share/devices share/robots share/worlds share/manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf" COMPONENT data
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.sdf" PATTERN "*.png" PATTERN "*.obj")
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT programs

@@ -64,7 +64,9 @@ void DriveRules::check_order(const LogFrame& logged, const DriveCommand& command
 void DriveRules::check_fault_reset(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   if (order_of(command.controlword) != DriveOrder::fault_reset) return;
   const std::string_view name = name_of(command.drive);
-  if (drive.command && order_of(drive.command->controlword) == DriveOrder::fault_reset)
+  // a device file may ask for more than one frame
+  const bool once = network_.bus().drives[command.drive].device.fault_reset_cycles == 1;
+  if (once && drive.command && order_of(drive.command->controlword) == DriveOrder::fault_reset)
     findings_.add(logged, rule::fault_reset, "bit 7 of {} stays 1: only its rising edge resets", name);
   if (could_be(logged, drive, [](const Shown& shown) { return shown.state() == PowerState::fault; })) return;
   findings_.add(logged, rule::fault_reset, "{} gets a fault reset in the state \"{}\"", name,

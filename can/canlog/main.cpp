@@ -3,8 +3,10 @@
 //   kenaf-canlog square.log | less
 //   candump -L can0 | kenaf-canlog --figures
 //   kenaf-canlog --check --robot kenaf square.log
+//   kenaf-canlog eds drive.eds --robot kenaf --node 1
 //
-// Exit status: 0; 1 if --check found a violation; 2 for bad input, or if the output cannot be written.
+// Exit status: 0; 1 if --check found a violation, or an EDS does not fit; 2 for bad input, or if the output cannot be
+// written.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +20,7 @@
 #include <string_view>
 
 #include "can/canlog/describe.hpp"
+#include "can/canlog/eds_command.hpp"
 #include "can/canlog/figures.hpp"
 #include "can/canlog/log.hpp"
 #include "can/canlog/print_limit.hpp"
@@ -154,8 +157,25 @@ int main(int argc, char** argv) {
   app.add_option("--bitrate", options.bit_rate, "--figures: of the bus, in bit/s")
       ->check(command_line::number_in(10'000, 1'000'000))
       ->capture_default_str();
+  canlog::EdsOptions eds_options;
+  CLI::App* eds = app.add_subcommand(
+      "eds", "prints a drive's electronic data sheet (EDS or DCF, CiA 306) and compares it with what the library does");
+  eds->add_option("FILE", eds_options.file, "an EDS or DCF file")->required();
+  eds->add_option(
+      "--robot", eds_options.robot,
+      "compare with the drives of this robot, a name or a TOML file; exit status 1 if something does not fit");
+  eds->add_option("--node", eds_options.node, "of these, only the drive with this node number; also for $NODEID")
+      ->check(command_line::whole_number_in(1, 127));
+  eds->add_option("--period", eds_options.period_s, "the library's period_s, in seconds")
+      ->check(command_line::number_in(0.001, 0.02))
+      ->capture_default_str();
   if (const auto status = command_line::parse(app, argc, argv)) return *status;
   try {
+    if (*eds) {
+      const bool fits = canlog::print_eds(eds_options);
+      finish_output();
+      return fits ? 0 : kBroken;
+    }
     return run(options);
   } catch (const std::exception& error) {
     // not fmt::print, which throws if standard error is on the full disk too

@@ -1,1 +1,2 @@
 kenaf_fuzzer(robot_bus_fuzz SOURCE robot_bus_fuzz.cpp LIBRARIES kenaf_canbus)
+kenaf_fuzzer(device_file_fuzz SOURCE device_file_fuzz.cpp LIBRARIES kenaf_canbus)
