@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
       "--robot", eds_options.robot,
       "compare with the drives of this robot, a name or a TOML file; exit status 1 if something does not fit");
   eds->add_option("--node", eds_options.node, "of these, only the drive with this node number; also for $NODEID")
-      ->check(command_line::whole_number_in(1, 127));
+      ->check(command_line::whole_number(1, 127));
   eds->add_option("--period", eds_options.period_s, "the library's period_s, in seconds")
       ->check(command_line::number_in(0.001, 0.02))
       ->capture_default_str();

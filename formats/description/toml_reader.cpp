@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
+
+#include "formats/settings/nearest_word.hpp"
 
 namespace kenaf::description {
 namespace {
@@ -15,22 +14,6 @@ std::string range_text(Range range) {
   if (std::isinf(range.max)) return fmt::format("{} {}", range.open_min ? "more than" : "at least", range.min);
   return fmt::format("{} {} to {}", range.open_min ? "more than" : "from", range.min, range.max);
 }
-
-// Letters to insert, remove or replace to make one word the other (Levenshtein, 1966).
-std::size_t edits_between(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row.back();
-}
-
-constexpr std::size_t kLongestKey = 60;  // of those that are compared; all known ones are shorter
 
 }  // namespace
 
@@ -166,21 +149,13 @@ void TomlReader::finish() const {
     const std::string_view name = key.str();
     if (std::find(read_.begin(), read_.end(), name) != read_.end()) continue;
 
-    // A slip of the pen is a third of the letters at most (chosen), and the key meant is not there beside it.
-    std::string_view meant;
-    std::size_t fewest = name.size() / 3 + 1;
-    for (const std::vector<std::string>* known : std::array<const std::vector<std::string>*, 2>{&read_, &asked_}) {
-      for (const std::string& other : *known) {
-        if (name.size() > kLongestKey || table_.contains(other)) continue;
-        const std::size_t edits = edits_between(name, other);
-        if (edits < fewest) {
-          fewest = edits;
-          meant = other;
-        }
-      }
+    // A key that is there beside it cannot be the one that was meant.
+    std::vector<std::string> possible;
+    for (const std::string& known : asked_) {
+      if (!table_.contains(known)) possible.push_back(known);
     }
-    fail_at(key.source(), fmt::format("{} is not a known key{}", name_of(name),
-                                      meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
+    fail_at(key.source(),
+            fmt::format("{} is not a known key{}", name_of(name), settings::did_you_mean(name, possible)));
   }
 }
 
