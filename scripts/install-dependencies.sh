@@ -3,7 +3,7 @@
 #
 #   scripts/install-dependencies.sh          to build, test and package
 #   scripts/install-dependencies.sh build    only to build, install and package, and to run the demo
-#   scripts/install-dependencies.sh bench    as without, and the engines that the benchmark compares with
+#   scripts/install-dependencies.sh bench    as without, and the engines that the benchmark compares with, and load
 set -euo pipefail
 
 packages=(
@@ -31,7 +31,7 @@ case $mode in
       # a diagnosis by several processes
       libopenmpi-dev openmpi-bin
     )
-    if [ "$mode" = bench ]; then packages+=(libmujoco-dev libode-dev); fi
+    if [ "$mode" = bench ]; then packages+=(libmujoco-dev libode-dev stress); fi
     ;;
   *) echo "install-dependencies: '$mode' is neither 'build', 'bench' nor nothing" >&2; exit 2 ;;
 esac

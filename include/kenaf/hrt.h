@@ -217,10 +217,11 @@ HRT_INLINE hrt_config hrt_config_default(void) {
  * Blocks up to connect_timeout_s of wall-clock time; libkenaf_real: can_timeout_s until all nodes have started, a
  * second or two to configure them, and the homing. Cannot be interrupted, not even by hrt_close() in another thread.
  * HRT_E_BUSY: the robot is open already (a lost one is closed and reopened), or is being opened or closed;
- * HRT_E_CONFIG; HRT_E_LINK: no answer, hrt_last_error() says what to start; HRT_E_REFUSED: another program has the
- * robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such interface,
- * interface down, or a node, named in hrt_last_error() with the reason, that does not start, is not of the expected
- * kind, refuses a value or cannot be enabled; HRT_E_RECORD: the configured recording cannot be started. */
+ * HRT_E_CONFIG, also (libkenaf_real) if the system forbids the real time that the description asks for; HRT_E_LINK: no
+ * answer, hrt_last_error() says what to start; HRT_E_REFUSED: another program has the robot, or the relay has no world
+ * server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such interface, interface down, or a node, named
+ * in hrt_last_error() with the reason, that does not start, is not of the expected kind, refuses a value or cannot be
+ * enabled; HRT_E_RECORD: the configured recording cannot be started. */
 int hrt_kenaf_init(void);
 
 /* The same with *config alone; file and environment are not read (hrt_config_load does that). Also HRT_E_ARGUMENT:
