@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "can/canbus/bus_layout.hpp"
 #include "can/canbus/robot_bus.hpp"
@@ -91,6 +92,14 @@ struct CanTransport::Session {
         master(*bus, robot.master, to_time(robot.master_heartbeat_s), to_time(robot.answer_s)),
         cycle(master, robot, period_s) {}
 
+  ~Session() { end_opening(); }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  void end_opening() {
+    if (of_opener) give_back(*std::exchange(of_opener, std::nullopt));
+  }
+
   canbus::RobotBus robot;
   double period_s;
   std::unique_ptr<canopen::Bus> bus;
@@ -100,6 +109,7 @@ struct CanTransport::Session {
   std::string warning_of_start;
   std::size_t doubted = 0;  // drives whose velocity cannot be what it says
   Warnings warnings;
+  std::optional<Scheduling> of_opener;  // before it opened in real time, until the cycles have a thread of their own
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   // beats and late orders during the opening: reported with the first state after it
@@ -123,6 +133,10 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
   check_real_time(s.robot);
+  if (s.robot.realtime_priority) {
+    s.of_opener = scheduling_of_caller();
+    begin_real_time(s.robot);
+  }
   s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
   s.master.watch_pauses(to_time(s.robot.master_silence_s));
@@ -145,6 +159,7 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
 
 void CanTransport::begin_cycles() {
   begin_real_time(session_->robot);
+  session_->end_opening();
 }
 
 std::optional<robot::State> CanTransport::wait_state() {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <linux/capability.h>
-#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -31,9 +30,10 @@ std::string in_words(int error) {
 }
 
 void set_priority(int priority) {
+  // 0: of the calling thread. pthread_setschedparam() has no flag by which new threads do not inherit.
   const sched_param parameter{.sched_priority = priority};
-  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
-  if (error != 0) throw Error(HRT_E_CONFIG, refusal_of_priority(priority, error, soft_limit(RLIMIT_RTPRIO)));
+  if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0) return;
+  throw Error(HRT_E_CONFIG, refusal_of_priority(priority, errno, soft_limit(RLIMIT_RTPRIO)));
 }
 
 bool may_lock_all() {
@@ -89,6 +89,16 @@ void check_real_time(const canbus::RobotBus& bus) {
     }
   }).join();
   if (refused) std::rethrow_exception(refused);
+}
+
+Scheduling scheduling_of_caller() {
+  Scheduling scheduling{.thread = gettid(), .policy = sched_getscheduler(0), .parameter = {}};
+  sched_getparam(0, &scheduling.parameter);
+  return scheduling;
+}
+
+void give_back(const Scheduling& scheduling) {
+  sched_setscheduler(scheduling.thread, scheduling.policy, &scheduling.parameter);
 }
 
 void begin_real_time(const canbus::RobotBus& bus) {

@@ -7,7 +7,9 @@
 // Thread safety: any thread.
 #pragma once
 
+#include <sched.h>
 #include <sys/resource.h>
+#include <sys/types.h>
 
 #include <string>
 
@@ -19,7 +21,18 @@ namespace kenaf::real {
 // priority in a thread of its own, so that a refusal costs nothing. Throws hrt::Error(HRT_E_CONFIG) with what to set.
 void check_real_time(const canbus::RobotBus& bus);
 
-// In the thread of the cycles. Throws as check_real_time().
+// Scheduling of a thread, to be given back to it.
+struct Scheduling {
+  pid_t thread;  // gettid()
+  int policy;
+  sched_param parameter;
+};
+Scheduling scheduling_of_caller();
+void give_back(const Scheduling& scheduling);  // a thread that has ended needs it no more
+
+// For the calling thread: the one of the cycles, and before it the one that opens the robot, since drives that are
+// enabled miss their commands in a late opening too. Threads that it starts do not inherit it. Throws as
+// check_real_time().
 void begin_real_time(const canbus::RobotBus& bus);
 
 // "cycles by SCHED_FIFO at priority 50, memory locked".

@@ -3,7 +3,6 @@
 // the test.
 #include "libkenaf_real/real_time.hpp"
 
-#include <pthread.h>
 #include <sched.h>
 
 #include <catch2/catch.hpp>
@@ -19,14 +18,13 @@ using namespace kenaf::real;
 
 namespace {
 
-struct Scheduling {
-  int policy, priority;
-};
-Scheduling scheduling_now() {
-  int policy = 0;
-  sched_param parameter{};
-  REQUIRE(pthread_getschedparam(pthread_self(), &policy, &parameter) == 0);
-  return {policy, parameter.sched_priority};
+int policy_now() {
+  return sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
+}
+int policy_of_new_thread() {
+  int policy = -1;
+  std::thread([&] { policy = policy_now(); }).join();
+  return policy;
 }
 
 }  // namespace
@@ -43,37 +41,60 @@ TEST_CASE("A refusal names key, limit and what to write where") {
   CHECK_THAT(refusal_of_locking(ENOMEM, RLIM_INFINITY), Catch::Contains("is unlimited (`ulimit -l`)"));
 }
 
-TEST_CASE("The thread of the cycles runs at the described priority, or the robot is not touched") {
+TEST_CASE("Opening and cycles run at the described priority, or the robot is not touched") {
   const std::string key = "interface = \"can0\"";
   const ChangedRobot changed({{key, key + "\nrealtime_priority = 3"}});
   RobotOnBus robot(changed.path());
-  const Scheduling before = scheduling_now();
+  const int before = policy_now();
   try {
     robot.open();
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_CONFIG);
     CHECK_THAT(error.what(), Catch::StartsWith("realtime_priority is 3"));
     CHECK(robot.wire.log().empty());
+    CHECK(policy_now() == before);
     return;
   }
   CHECK_THAT(robot.transport.setup(), Catch::EndsWith("cycles by SCHED_FIFO at priority 3, memory not locked"));
-  CHECK(scheduling_now().policy == before.policy);
+  // until the cycles have a thread of their own; what the opening starts meanwhile is not in real time
+  CHECK(policy_now() == SCHED_FIFO);
+  CHECK(policy_of_new_thread() == SCHED_OTHER);
   Scheduling cycle{};
   std::thread([&] {
     robot.transport.begin_cycles();
-    cycle = scheduling_now();
+    cycle = scheduling_of_caller();
   }).join();
-  CHECK(cycle.policy == SCHED_FIFO);
-  CHECK(cycle.priority == 3);
-  CHECK(scheduling_now().policy == before.policy);
+  CHECK((cycle.policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO);
+  CHECK(cycle.parameter.sched_priority == 3);
+  CHECK(policy_now() == before);
+}
+
+TEST_CASE("An opening that fails, or is closed before its first cycle, gives its thread its scheduling back") {
+  const std::string key = "interface = \"can0\"";
+  const ChangedRobot changed({{key, key + "\nrealtime_priority = 3"}});
+  const int before = policy_now();
+  RobotOnBus dead(changed.path());
+  dead.wire.inject({candrives::FaultKind::silent, 1});
+  dead.config.can_timeout_s = 0.5;
+  CHECK_THROWS_AS(dead.open(), hrt::Error);
+  dead.transport.close();
+  CHECK(policy_now() == before);
+  RobotOnBus robot(changed.path());
+  try {
+    robot.open();
+  } catch (const hrt::Error&) {
+    return;  // this system forbids real time
+  }
+  robot.transport.close();
+  CHECK(policy_now() == before);
 }
 
 TEST_CASE("Without the keys nothing is asked of the system") {
   RobotOnBus robot;
+  const int before = policy_now();
   robot.open();
   CHECK_THAT(robot.transport.setup(), Catch::EndsWith("cycles by the usual scheduler, memory not locked"));
-  const Scheduling before = scheduling_now();
+  CHECK(policy_now() == before);
   robot.transport.begin_cycles();
-  CHECK(scheduling_now().policy == before.policy);
-  CHECK(scheduling_now().priority == before.priority);
+  CHECK(policy_now() == before);
 }
