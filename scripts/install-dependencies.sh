@@ -1,29 +1,36 @@
 #!/usr/bin/env bash
-# Installs what is missing of the Debian 12 packages that Kenaf needs. docs/developing.md says what each is for.
+# Installs what is missing of the Debian packages that Kenaf needs. docs/developing.md says what each is for.
 #
-#   scripts/install-dependencies.sh          to build, test and package
-#   scripts/install-dependencies.sh build    only to build, install and package, and to run the demo
-#   scripts/install-dependencies.sh bench    as without, and the engines that the benchmark compares with, and load
+#   scripts/install-dependencies.sh                  to build, test and package
+#   scripts/install-dependencies.sh build            only to build, install and package, and to run the demo
+#   scripts/install-dependencies.sh tests            as build, and to run the tests; without sanitizers and the CAN bus
+#   scripts/install-dependencies.sh library          only the two libraries (-DKENAF_BUILD_SIMULATOR=OFF)
+#   scripts/install-dependencies.sh library-tests    the same with their tools, tests and packages
+#   scripts/install-dependencies.sh bench            as without, and the engines that the benchmark compares with, and load
 set -euo pipefail
 
+library=(cmake g++ make libfmt-dev libtomlplusplus-dev libturbojpeg0-dev)
 packages=(
-  cmake g++ ninja-build pkg-config
+  "${library[@]}" ninja-build pkg-config
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libbz2-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
-  libfmt-dev libjs-three liblz4-dev libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libsqlite3-dev libtinyxml2-dev libtomlplusplus-dev
-  libturbojpeg0-dev liburdfdom-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
+  libjs-three liblz4-dev libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libsqlite3-dev libtinyxml2-dev
+  liburdfdom-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
   # the Python package
   pybind11-dev python3-dev python3-numpy
   # the package
   dpkg-dev file help2man python3
 )
+# The same on every release of Debian.
+tests=(abigail-tools binutils catch2 chromium-headless-shell git iproute2 liburdfdom-tools mypy python3)
 mode=${1:-all}
 case $mode in
+  library) packages=("${library[@]}") ;;
+  library-tests) packages=("${library[@]}" abigail-tools catch2 dpkg-dev file libcli11-dev libncurses-dev) ;;
   build) ;;
+  tests) packages+=("${tests[@]}") ;;
   all | bench)
     packages+=(
-      # tests
-      abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev
-      liburdfdom-tools llvm mypy
+      "${tests[@]}" clang clang-format clang-tidy libclang-rt-14-dev llvm
       # tests of the package
       groff-base lintian zsh
       # the CAN tests
@@ -33,7 +40,7 @@ case $mode in
     )
     if [ "$mode" = bench ]; then packages+=(libmujoco-dev libode-dev stress); fi
     ;;
-  *) echo "install-dependencies: '$mode' is neither 'build', 'bench' nor nothing" >&2; exit 2 ;;
+  *) echo "install-dependencies: '$mode' is neither 'library', 'library-tests', 'build', 'tests', 'bench' nor nothing" >&2; exit 2 ;;
 esac
 
 missing=()
