@@ -11,7 +11,11 @@ install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT pro
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/kenaf" COMPONENT programs)  # pages lead to it
 install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script" PATTERN "*.py")
-# What the operator's program includes of formats/, so that it can be built where it is installed.
+# What the operator's program includes of other rooms, so that it can be built where it is installed.
+install(DIRECTORY command_line DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
+  FILES_MATCHING PATTERN "*.cpp" PATTERN "*.hpp")
+install(DIRECTORY formats/settings DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats" COMPONENT programs
+  FILES_MATCHING PATTERN "*.cpp" PATTERN "*.hpp")
 install(FILES formats/protocol/datagram_codec.cpp formats/protocol/datagram_codec.hpp
   formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
   DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)

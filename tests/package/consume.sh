@@ -55,3 +55,10 @@ for library in sim real; do
 done
 expect_error "$work/pc_sim" relay
 expect_error "$work/pc_real" can
+
+# The operator's programs can be built where they are installed, by the commands of their page.
+documents=$prefix/share/doc/kenaf
+sed -n '/^shared=/,/^```/p' "$documents/docs/operator.md" | grep -v '^```' >"$work/commands"
+grep -q operator_console "$work/commands" || fail "docs/operator.md does not say how its programs are built"
+(cd "$documents/teleop" && PKG_CONFIG_PATH=$pkgconfig bash -e "$work/commands") >"$work/operator.log" 2>&1 ||
+  { tail -n 30 "$work/operator.log"; fail "the operator's programs cannot be built as docs/operator.md says"; }
