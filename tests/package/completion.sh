@@ -21,7 +21,8 @@ offers() (
 )
 expect() {  # EXPECTED PROGRAM WORD...: the expected word is among the offered
   local expected=$1; shift
-  offers "$@" | grep -qxF -- "$expected" || fail "'$*' is not completed by '$expected', but by: $(offers "$@" | tr '\n' ' ')"
+  offers "$@" >offered || true  # no word fits: compgen fails
+  grep -qxF -- "$expected" offered || fail "'$*' is not completed by '$expected', but by: $(tr '\n' ' ' <offered)"
 }
 
 options_of() { grep -oE '^  -[-a-zA-Z,]+' | tr -d ' ' | tr ',' '\n'; }

@@ -20,7 +20,7 @@ for package in "${packages[@]}"; do
   dpkg-deb --fsys-tarfile "$(deb "$package")" | tar -t >"$work/$package.files"
   ! files "$package" | grep -vE '^\./(usr/.*)?$' || fail "$package installs outside of /usr"
   for document in copyright changelog.gz changelog.Debian.gz; do
-    files "$package" | grep -qxF "./usr/share/doc/$package/$document" || fail "$package has no $document"
+    grep -qxF "./usr/share/doc/$package/$document" "$work/$package.files" || fail "$package has no $document"
   done
   [ "$(field "$package" Version)" = "$version" ] || fail "$package is not of version $version"
   dpkg-deb -x "$(deb "$package")" "$work/root"
@@ -43,7 +43,7 @@ dangling=$(find "$work/root" -type l ! -exec test -e {} \; -print)
 holds() {  # PACKAGE PATTERN...
   local package=$1 pattern; shift
   for pattern in "$@"; do
-    files "$package" | grep -qxE "\./usr/$pattern" || { files "$package"; fail "$pattern is not in $package"; }
+    grep -qxE "\./usr/$pattern" "$work/$package.files" || { files "$package"; fail "$pattern is not in $package"; }
   done
 }
 holds "$library" "lib/$triplet/libkenaf_sim\.so\.$abi" "lib/$triplet/libkenaf_real\.so\.$abi"
