@@ -5,7 +5,7 @@
 #   scripts/try-package.sh [BUILD_DIR]      default: build/install, which must be built
 #
 # Needs root, debootstrap, and a mirror (MIRROR, default http://deb.debian.org/debian). The Debian is made below CHROOTS
-# (default /tmp/chroots), takes 2 GB and goes at the end. Processes and ports are in namespaces of their own. A few
+# (default /tmp/chroots), takes 2 GB and goes at the end. Processes and ports are in namespaces of their own. About five
 # minutes. Exit status 0: all of it worked.
 set -euo pipefail
 say() { printf 'try-package: %s\n' "$*"; }
@@ -109,7 +109,8 @@ fi
 
 # The services. A systemd that is not the machine's first process runs none, so one is played: enabling is that of the real
 # systemctl, which needs no running one; starting, stopping and asking are done here, by the unit's own command.
-cat >"$root/usr/local/bin/systemctl" <<'SYSTEMCTL'
+mv "$root/usr/bin/systemctl" "$root/usr/bin/systemctl.real"
+cat >"$root/usr/bin/systemctl" <<'SYSTEMCTL'
 #!/bin/sh
 echo "$*" >>/var/log/systemctl
 action= units=
@@ -133,15 +134,15 @@ for unit in $units; do
         setsid setpriv --reuid=nobody --regid=nogroup --clear-groups "$command" >"/var/log/$unit" 2>&1 </dev/null & echo $! >"/run/$unit.pid"
       fi ;;
     is-active) [ -n "$pid" ] && kill -0 "$pid" 2>/dev/null || status=3 ;;
-    *) exec /usr/bin/systemctl "$@" ;;
+    *) exec systemctl.real "$@" ;;
   esac
 done
 [ "$action" != daemon-reload ] || exit 0
 exit $status
 SYSTEMCTL
-chmod 755 "$root/usr/local/bin/systemctl"
+chmod 755 "$root/usr/bin/systemctl"
 mkdir -p "$root/run/systemd/system"
-as_root() { chroot "$root" /usr/bin/env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
+as_root() { chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
 quietly() { as_root "$@" >"$root/said" 2>&1 || { cat "$root/said"; fail "$*"; }; }
 is_running() { [ -e "$root/run/$1.service.pid" ] && kill -0 "$(cat "$root/run/$1.service.pid")" 2>/dev/null; }
 kenaf_debs() { (cd "$root" && ls -d ./new/{libkenaf[0-9],libkenaf-dev,kenaf-data,kenaf,kenaf-operator}_*.deb); }
