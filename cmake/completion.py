@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 SHIPPED = {"--robot": ("robots", "toml"), "--world": ("worlds", "sdf")}
 # Which command of the program lists the names, in its first column: a file may hold several.
 LISTED = {"--manoeuvre": "manoeuvres"}
-# What follows an option's names: a type such as "FLOAT:FLOAT in [0 - 1]=1" or "TEXT ...", what else it needs, its words.
-OPTION_REST = (r"(?: (?P<type>(?!Needs:|Excludes:)\S+(?: in \[[^\]]*\]\S*)?(?: x \d+)?)(?P<many> \.\.\.)?)?"
+# What follows an option's names: a type such as "FLOAT:0 to 1=1" or "TEXT ...", what else it needs, its words.
+OPTION_REST = (r"(?: (?P<type>(?!Needs:|Excludes:)\S+(?: in \[[^\]]*\]\S*| to \S+)?(?: x \d+)?)(?P<many> \.\.\.)?)?"
                r"(?: (?:Needs|Excludes):(?: -\S+)+)*\s*(?P<words>.*)")
 NUMBERS = ("UINT", "INT", "FLOAT", "SECONDS")
 
