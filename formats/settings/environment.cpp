@@ -48,6 +48,7 @@ constexpr std::array kVariables = std::to_array<Variable>({
     {"KENAF_RELAYD_OPTIONS", services, "options of kenaf-relayd.service"},
     {"KENAF_PATIENCE_S", development, "how long a test waits for what must come"},
     {"KENAF_BIN_DIR", development, "folder of the programs that the tests of Python start"},
+    {"KENAF_EMULATOR", development, "what runs programs for another machine"},
     {"KENAF_MARMOTTE_DATA", development, "folder of a real robot's recordings"},
     {"KENAF_VCAN_WAY", development, "how scripts/with-vcan.sh gets a CAN bus"},
     {"KENAF_VCAN_TIMEOUT", development, "limit of scripts/with-vcan.sh in seconds"},
