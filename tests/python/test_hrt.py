@@ -39,6 +39,13 @@ class WithoutRobot(unittest.TestCase):
         )
         self.assertIn('must be "sim" or "real"', wrong.stderr)
 
+    def test_a_variable_that_does_not_exist_is_an_import_error(self) -> None:
+        wrong = subprocess.run(
+            [sys.executable, "-c", "import kenaf"], env={**os.environ, "KENAF_DATADIR": "/"}, capture_output=True, text=True
+        )
+        self.assertNotEqual(wrong.returncode, 0)
+        self.assertIn("KENAF_DATADIR is not known; did you mean KENAF_DATA_DIR?", wrong.stderr)
+
     def test_nobody_at_the_relays_address_is_a_link_error(self) -> None:
         with self.assertRaisesRegex(hrt.LinkError, "start kenaf-relayd"):
             hrt.kenaf_init(hrt.Config(relay="127.0.0.1:9", connect_timeout_s=0.05))
