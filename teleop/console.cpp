@@ -171,7 +171,7 @@ class Console {
     const View seen{options_.control, options_.camera, gamepad_.name(), newest(), taken_, health_, desk_, wish,
                     now_s()};
     if (terminal_) {
-      terminal_->show(draw_screen(seen));
+      terminal_->show(draw_screen(seen, terminal_->rows(), terminal_->columns()));
       next_show_s_ = now_s() + kScreenPeriod_s;
     } else {
       say(plain_line(seen));

@@ -81,6 +81,7 @@ void Desk::act(Action action, double now_s, const Status* newest) {
       break;
     case Action::stand:
       key_.let_go();
+      if (newest != nullptr) hold_flippers(*newest);
       break;
     case Action::emergency_stop:
       key_.let_go();
@@ -104,6 +105,14 @@ void Desk::act(Action action, double now_s, const Status* newest) {
     default:
       break;
   }
+}
+
+// Where they are now: an order under way ends here.
+void Desk::hold_flippers(const Status& newest) {
+  if (!ordered_deg_ || (newest.fields & kHasFlippers) == 0) return;
+  std::array<double, kFlipperCount> deg = newest.flipper_deg;
+  for (double& each : deg) each = std::clamp(each, -kMaxNudged_deg, kMaxNudged_deg);
+  order_flippers(deg, "held");
 }
 
 void Desk::nudge(unsigned flippers, double by_deg, const Status& newest) {

@@ -41,6 +41,7 @@ class Desk {
 
  private:
   void nudge(unsigned flippers, double by_deg, const Status& newest);  // bit i: flipper i
+  void hold_flippers(const Status& newest);
   void order_flippers(const std::array<double, kFlipperCount>& deg, std::string name);
 
   DriveKey key_;

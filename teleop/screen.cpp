@@ -11,7 +11,6 @@ namespace kenaf::teleop {
 namespace {
 
 constexpr double kSilent_s = 0.5;  // a pause of this length without a status is shown as silence
-constexpr std::string_view kRule = "--------------------------------------------------------------------------------";
 
 // Nominal dimensions of the robot, for the drawing only: pivots, flippers, height of body and belts.
 constexpr double kPivotX_mm = 225, kFlipper_mm = 145, kBodyTop_mm = 90, kBelly_mm = -90, kPivotZ_mm = -25;
@@ -25,12 +24,20 @@ struct Point {
 // Draws into the posture field; the body is at its centre.
 class SideView {
  public:
-  SideView(Canvas& canvas, std::size_t row, std::size_t column, double nose_up_rad)
-      : canvas_(canvas), row_(row), column_(column), cos_(std::cos(nose_up_rad)), sin_(std::sin(nose_up_rad)) {}
+  SideView(Canvas& canvas, std::size_t row, std::size_t column, double nose_up_rad, std::size_t scale)
+      : canvas_(canvas),
+        row_(row),
+        column_(column),
+        rows_(kPostureRows * scale),
+        columns_(kPostureColumns * scale),
+        column_mm_(kColumn_mm / static_cast<double>(scale)),
+        row_mm_(kRow_mm / static_cast<double>(scale)),
+        cos_(std::cos(nose_up_rad)),
+        sin_(std::sin(nose_up_rad)) {}
 
   void line(Point from, Point to, Tone tone) {
     const Point a = turned(from), b = turned(to);
-    const double steps = std::max(std::abs(b.x_mm - a.x_mm) / kColumn_mm, std::abs(b.z_mm - a.z_mm) / kRow_mm);
+    const double steps = std::max(std::abs(b.x_mm - a.x_mm) / column_mm_, std::abs(b.z_mm - a.z_mm) / row_mm_);
     const auto count = std::max(1, static_cast<int>(std::ceil(steps)));
     const char character = stroke(b.x_mm - a.x_mm, b.z_mm - a.z_mm);
     for (int i = 0; i <= count; ++i) {
@@ -53,9 +60,9 @@ class SideView {
     return dx_mm * dz_mm > 0 ? '/' : '\\';
   }
   void put(double x_mm, double z_mm, char character, Tone tone) {
-    const auto column = static_cast<int>(std::lround(x_mm / kColumn_mm)) + static_cast<int>(kPostureColumns / 2);
-    const auto row = static_cast<int>(kPostureRows / 2) - static_cast<int>(std::lround(z_mm / kRow_mm));
-    if (column < 0 || column >= static_cast<int>(kPostureColumns) || row < 0 || row >= static_cast<int>(kPostureRows)) {
+    const auto column = static_cast<int>(std::lround(x_mm / column_mm_)) + static_cast<int>(columns_ / 2);
+    const auto row = static_cast<int>(rows_ / 2) - static_cast<int>(std::lround(z_mm / row_mm_));
+    if (column < 0 || column >= static_cast<int>(columns_) || row < 0 || row >= static_cast<int>(rows_)) {
       return;
     }
     canvas_.put(row_ + static_cast<std::size_t>(row), column_ + static_cast<std::size_t>(column),
@@ -63,8 +70,8 @@ class SideView {
   }
 
   Canvas& canvas_;
-  std::size_t row_, column_;
-  double cos_, sin_;
+  std::size_t row_, column_, rows_, columns_;
+  double column_mm_, row_mm_, cos_, sin_;
 };
 
 Tone tone_of(Mode mode) {
@@ -108,8 +115,22 @@ std::string words_of(const Status& status) {
   return "";
 }
 
+// A rounded 0 has no sign.
+std::string number(double value, int digits) {
+  std::string text = fmt::format("{:.{}f}", value, digits);
+  if (text.starts_with('-') && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+// An angle with its side in words: "5.0 left".
+std::string to_side(double value, int digits, std::string_view plus, std::string_view minus) {
+  const std::string size = number(std::abs(value), digits);
+  return size.find_first_not_of("0.") == std::string::npos ? size
+                                                           : fmt::format("{} {}", size, value > 0 ? plus : minus);
+}
+
 std::string figure(bool has, double value, int digits) {
-  return has ? fmt::format("{:.{}f}", value, digits) : "-";
+  return has ? number(value, digits) : "-";
 }
 
 std::string measured(bool has, double value, int digits) {
@@ -123,104 +144,140 @@ std::string measured(bool has, const std::array<double, n>& values, int digits) 
   return out;
 }
 
-void draw_link(Canvas& canvas, const View& view) {
-  canvas.put(0, 0, fmt::format(" KENAF  operator's console   control process at {}", view.control), Tone::title);
+// Where each part begins. In the compact form the link has the first row, and there are no rules.
+struct Form {
+  bool full;
+  std::size_t link, robot, figures, figures_column, place, desk, help;
+};
+
+Form form_of(std::size_t rows, std::size_t columns) {
+  if (rows < kRows || columns < kColumns) return {false, 0, 1, 3, 1, 12, 14, 16};
+  const std::size_t more = rows - kRows;
+  return {true, 1, 2, 5, columns - 40, 14 + more, 16 + more, 20 + more};
+}
+
+void draw_rule(Canvas& canvas, std::size_t row) {
+  canvas.put(row, 0, std::string(canvas.columns(), '-'), Tone::dim);
+}
+
+void draw_link(Canvas& canvas, const View& view, const Form& form) {
   const std::optional<double> silence_s = view.health.silence_s(view.now_s);
-  canvas.put(1, 1, "link");
+  canvas.put(form.link, 1, "link");
   if (view.taken) {
-    canvas.put(1, 8, fmt::format("TAKEN: {}", *view.taken), Tone::alarm);
+    canvas.put(form.link, 8, fmt::format("TAKEN: {}", *view.taken), Tone::alarm);
   } else if (!silence_s) {
-    canvas.put(1, 8, "nothing heard yet", Tone::alarm);
+    canvas.put(form.link, 8, "nothing heard yet", Tone::alarm);
   } else if (*silence_s > kSilent_s) {
-    canvas.put(1, 8, fmt::format("SILENT for {:.1f} s: the values below are old", *silence_s), Tone::alarm);
+    canvas.put(form.link, 8, fmt::format("SILENT for {:.1f} s: the values below are old", *silence_s), Tone::alarm);
   } else {
     const double up = view.health.loss_up_percent(), down = view.health.loss_down_percent();
-    canvas.put(1, 8, "ok", Tone::good);
-    canvas.put(1, 12,
-               fmt::format("round trip {:3.0f} ms   lost up {:.0f} %  down {:.0f} %   heard {:.2f} s ago",
-                           1e3 * view.health.round_trip_s().value_or(0), up, down, *silence_s),
+    const double round_trip_ms = 1e3 * view.health.round_trip_s().value_or(0);
+    canvas.put(form.link, 8, "ok", Tone::good);
+    canvas.put(form.link, 12,
+               form.full ? fmt::format("round trip {:3.0f} ms   lost up {:.0f} %  down {:.0f} %   heard {:.2f} s ago",
+                                       round_trip_ms, up, down, *silence_s)
+                         : fmt::format("{:.0f} ms  lost {:.0f}/{:.0f} %  heard {:.2f} s ago", round_trip_ms, up, down,
+                                       *silence_s),
                up > 20 || down > 20 ? Tone::warning : Tone::plain);
   }
 }
 
-void draw_state(Canvas& canvas, const Status& status) {
-  canvas.put(2, 1, "robot");
-  canvas.put(2, 8, words_of(status), tone_of(status.mode));
+void draw_state(Canvas& canvas, const Status& status, const Form& form) {
+  canvas.put(form.robot, 1, "robot");
+  canvas.put(form.robot, 8, words_of(status), tone_of(status.mode));
   std::string notes = (status.flags & kSimulated) != 0 ? "simulated" : "real";
   if ((status.flags & kPaused) != 0) notes += ", PAUSED";
   if ((status.flags & kStoppedBySilence) != 0) notes += ", STOPPED: control too slow";
   if ((status.flags & kRecording) != 0) notes += ", recording";
-  canvas.put(3, 8,
-             fmt::format("{}   time {:.1f} s   round trip {:.1f} ms   late cycles {}", notes, status.robot_time_s,
-                         status.robot_round_trip_ms, status.late_cycles),
-             Tone::dim);
+  notes += fmt::format("   time {:.1f} s", status.robot_time_s);
+  if (form.full) {
+    notes += fmt::format("   round trip {:.1f} ms   late cycles {}", status.robot_round_trip_ms, status.late_cycles);
+  }
+  canvas.put(form.robot + 1, 8, notes, Tone::dim);
 }
 
-void draw_measured(Canvas& canvas, const Status& status, const Wish& wish) {
-  constexpr std::size_t kColumn = 40;
+void draw_measured(Canvas& canvas, const Status& status, const Wish& wish, const Form& form) {
   const auto has = [&](std::uint32_t field) { return (status.fields & field) != 0; };
-  canvas.put(5, kColumn, "tracks    left  right", Tone::title);
-  canvas.put(6, kColumn, "wanted " + measured(true, wish.track_mmps, 0) + "  mm/s");
-  canvas.put(7, kColumn, "driven " + measured(has(kHasEncoders), status.track_mmps, 0) + "  mm/s");
-  canvas.put(8, kColumn, "current" + measured(has(kHasCurrents), status.track_a, 1) + "  A");
-  canvas.put(9, kColumn, "flipper   fr.l   fr.r   re.l   re.r", Tone::title);
+  std::size_t row = form.figures;
+  const auto put = [&](const std::string& text, Tone tone = Tone::plain) {
+    canvas.put(row++, form.figures_column, text, tone);
+  };
+  put("tracks    left  right", Tone::title);
+  put("wanted " + measured(true, wish.track_mmps, 0) + "  mm/s");
+  put("driven " + measured(has(kHasEncoders), status.track_mmps, 0) + "  mm/s");
+  put("current" + measured(has(kHasCurrents), status.track_a, 1) + "  A");
+  put("flipper   fr.l   fr.r   re.l   re.r", Tone::title);
   std::string sent = "sent   ";
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
     sent += measured((status.flippers_commanded >> i & 1) != 0, status.commanded_flipper_deg[i], 0);
   }
-  canvas.put(10, kColumn, sent + " deg");
-  canvas.put(11, kColumn, "angle  " + measured(has(kHasFlippers), status.flipper_deg, 0) + " deg");
-  canvas.put(12, kColumn, "current" + measured(has(kHasCurrents), status.flipper_a, 1) + " A");
-  canvas.put(13, kColumn, fmt::format("battery {} V", measured(has(kHasBattery), status.battery_v, 1)));
+  put(sent + " deg");
+  put("angle  " + measured(has(kHasFlippers), status.flipper_deg, 0) + " deg");
+  put("current" + measured(has(kHasCurrents), status.flipper_a, 1) + " A");
+  put(fmt::format("battery {} V", measured(has(kHasBattery), status.battery_v, 1)));
 }
 
-void draw_place(Canvas& canvas, const Status& status) {
+void draw_place(Canvas& canvas, const Status& status, const Form& form) {
   const auto& [roll, pitch, yaw] = status.posture_deg;
   if ((status.fields & kHasPosture) != 0) {
     const bool is_steep = std::abs(roll) > 25 || std::abs(pitch) > 40;
-    canvas.put(14, 1,
-               fmt::format("nose {} {:.1f}  roll {:+.1f}  yaw {:+.1f} deg", pitch < 0.05 ? "up" : "DOWN",
-                           std::abs(pitch), roll, yaw),
+    canvas.put(form.place, 1,
+               fmt::format("nose {} {} roll {} yaw {}", pitch < 0.05 ? "up" : "DOWN", number(std::abs(pitch), 1),
+                           to_side(roll, 1, "right", "left"), to_side(yaw, 0, "left", "right")),
                is_steep ? Tone::warning : Tone::plain);
   }
   const bool has_pose = (status.fields & kHasPose) != 0;
-  canvas.put(14, 44,
-             has_pose ? fmt::format("place {:.2f} {:.2f} {:.2f} m (true)", status.pose_mm[0] / 1e3,
-                                    status.pose_mm[1] / 1e3, status.pose_mm[2] / 1e3)
-                      : fmt::format("place {:.2f} {:.2f} m (by the tracks)", status.odometry[0] / 1e3,
-                                    status.odometry[1] / 1e3));
+  const auto metres = [](double mm) { return number(mm / 1e3, 2); };
+  canvas.put(
+      form.full ? form.place : form.place + 1, form.full ? 47 : 1,
+      has_pose ? fmt::format("place {} {} {} m (true)", metres(status.pose_mm[0]), metres(status.pose_mm[1]),
+                             metres(status.pose_mm[2]))
+               : fmt::format("place {} {} m (by the tracks)", metres(status.odometry[0]), metres(status.odometry[1])));
 }
 
-void draw_desk(Canvas& canvas, const View& view) {
-  canvas.put(16, 1,
-             fmt::format("speed {:.0f} mm/s   posture: {}   gamepad: {}", view.desk.speed_mmps(), view.desk.posture(),
-                         view.gamepad.empty() ? "none" : view.gamepad));
-  if (view.wish.emergency_stop) canvas.put(16, 60, "EMERGENCY PRESSED", Tone::alarm);
-  if (view.wish.deadman) canvas.put(16, 60, "DEAD-MAN HELD", Tone::good);
+void draw_desk(Canvas& canvas, const View& view, const Form& form) {
+  std::string desk = fmt::format("speed {:.0f} mm/s   posture: {}", view.desk.speed_mmps(), view.desk.posture());
+  if (form.full) desk += fmt::format("   gamepad: {}", view.gamepad.empty() ? "none" : view.gamepad);
+  canvas.put(form.desk, 1, desk);
+  const std::size_t flag = form.full ? 60 : 42;
+  if (view.wish.emergency_stop) canvas.put(form.desk, flag, "EMERGENCY PRESSED", Tone::alarm);
+  if (view.wish.deadman) canvas.put(form.desk, flag, "DEAD-MAN HELD", Tone::good);
   if (view.status != nullptr) {
     const bool is_degraded = (view.status->flags & kDegraded) != 0;
     const std::string_view warning = teleop::view(view.status->warning);
-    canvas.put(17, 1, is_degraded ? warning : teleop::view(view.status->message),
+    canvas.put(form.desk + 1, 1, is_degraded ? warning : teleop::view(view.status->message),
                is_degraded                           ? Tone::warning
                : view.status->mode == Mode::no_robot ? Tone::alarm
                                                      : Tone::dim);
   }
-  canvas.put(18, 1,
-             view.camera.empty() ? "camera: no address given (--camera)" : fmt::format("camera: {}", view.camera),
-             Tone::dim);
-  canvas.put(20, 1, "w s a d, arrows: drive, turn  home pgup end pgdn: arcs  space: stop  +-: speed");
-  canvas.put(21, 1, "E EMERGENCY STOP   X releases it   Q quit", Tone::alarm);
-  std::string postures = "posture:";
-  for (std::size_t i = 0; i < kPostures.size(); ++i) postures += fmt::format(" {} {} ", i + 1, kPostures[i].name);
-  canvas.put(22, 1, postures);
-  canvas.put(23, 1, "flippers up/down: front r/f  rear t/g   one: front u/j i/k  rear o/l p/;");
+  if (form.full) {
+    canvas.put(form.desk + 2, 1,
+               view.camera.empty() ? "camera: no address given (--camera)" : fmt::format("camera: {}", view.camera),
+               Tone::dim);
+  }
+}
+
+void draw_help(Canvas& canvas, const Form& form) {
+  canvas.put(form.help, 1,
+             form.full ? "w s a d, arrows: drive, turn  home pgup end pgdn: arcs  space: stand  +-: speed"
+                       : "w s a d, arrows: drive  space: stand  +-: speed");
+  canvas.put(form.help + 1, 1, "E EMERGENCY STOP   X releases it   Q quit", Tone::alarm);
+  std::string postures = form.full ? "posture:" : "";
+  for (std::size_t i = 0; i < kPostures.size(); ++i) {
+    postures += form.full ? fmt::format(" {} {} ", i + 1, kPostures[i].name)
+                          : fmt::format("{}{}{}", i == 0 ? "" : " ", i + 1, kPostures[i].name);
+  }
+  canvas.put(form.help + 2, 1, postures);
+  canvas.put(form.help + 3, 1,
+             form.full ? "flippers up/down: front r/f  rear t/g   one: front u/j i/k  rear o/l p/;"
+                       : "flippers: front r/f rear t/g  one: u/j i/k o/l p/;");
 }
 
 }  // namespace
 
 void Canvas::put(std::size_t row, std::size_t column, std::string_view text, Tone tone) {
-  if (row >= kRows) return;
-  for (std::size_t i = 0; i < text.size() && column + i < kColumns; ++i) {
+  if (row >= rows()) return;
+  for (std::size_t i = 0; i < text.size() && column + i < columns(); ++i) {
     const char character = text[i];
     cells[row][column + i] = {character >= ' ' && character <= '~' ? character : '?', tone};
   }
@@ -233,10 +290,10 @@ std::string Canvas::line(std::size_t row) const {
   return text;
 }
 
-void draw_posture(Canvas& canvas, std::size_t row, std::size_t column, const Status& status) {
+void draw_posture(Canvas& canvas, std::size_t row, std::size_t column, const Status& status, std::size_t scale) {
   constexpr double kRadians = std::numbers::pi / 180;
   const bool has_posture = (status.fields & kHasPosture) != 0;
-  SideView view(canvas, row, column, has_posture ? -status.posture_deg[1] * kRadians : 0);
+  SideView view(canvas, row, column, has_posture ? -status.posture_deg[1] * kRadians : 0, scale);
   const double end_x_mm = kPivotX_mm + 65;
   view.line({-end_x_mm + 40, kBelly_mm}, {end_x_mm - 40, kBelly_mm}, Tone::plain);
   view.line({-kPivotX_mm, kBodyTop_mm}, {kPivotX_mm, kBodyTop_mm}, Tone::plain);
@@ -258,19 +315,26 @@ void draw_posture(Canvas& canvas, std::size_t row, std::size_t column, const Sta
   view.dot({0, 0}, '>', Tone::dim);
 }
 
-Canvas draw_screen(const View& view) {
-  Canvas canvas;
-  draw_link(canvas, view);
-  canvas.put(4, 0, kRule, Tone::dim);
-  if (view.status != nullptr) {
-    draw_state(canvas, *view.status);
-    draw_posture(canvas, 5, 1, *view.status);
-    draw_measured(canvas, *view.status, view.wish);
-    draw_place(canvas, *view.status);
+Canvas draw_screen(const View& view, std::size_t rows, std::size_t columns) {
+  Canvas canvas(std::min(rows, kMostRows), std::min(columns, kMostColumns));
+  const Form form = form_of(canvas.rows(), canvas.columns());
+  if (form.full) {
+    canvas.put(0, 0, fmt::format(" KENAF  operator's console   control process at {}", view.control), Tone::title);
+    for (const std::size_t row : {form.figures - 1, form.place + 1, form.help - 1}) draw_rule(canvas, row);
   }
-  canvas.put(15, 0, kRule, Tone::dim);
-  draw_desk(canvas, view);
-  canvas.put(19, 0, kRule, Tone::dim);
+  draw_link(canvas, view, form);
+  if (view.status != nullptr) {
+    if (form.full) {
+      const std::size_t scale = std::max<std::size_t>(
+          1, std::min((form.place - form.figures) / kPostureRows, (form.figures_column - 1) / kPostureColumns));
+      draw_posture(canvas, form.figures, 1, *view.status, scale);
+    }
+    draw_state(canvas, *view.status, form);
+    draw_measured(canvas, *view.status, view.wish, form);
+    draw_place(canvas, *view.status, form);
+  }
+  draw_desk(canvas, view, form);
+  draw_help(canvas, form);
   return canvas;
 }
 

@@ -4,6 +4,7 @@
 #include <ncurses.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -110,18 +111,25 @@ Terminal::~Terminal() {
 
 void Terminal::show(const Canvas& canvas) {
   erase();
-  if (LINES < static_cast<int>(kRows) || COLS < static_cast<int>(kColumns)) {
-    const std::string words = fmt::format("{}x{}: needs {}x{}. Keys act; E stops.", COLS, LINES, kColumns, kRows);
-    mvaddnstr(0, 0, words.c_str(), COLS);
-  } else {
-    for (std::size_t row = 0; row < kRows; ++row) {
-      move(static_cast<int>(row), 0);
-      for (const Canvas::Cell& cell : canvas.cells[row]) {
-        addch(static_cast<chtype>(cell.character) | static_cast<chtype>(attributes_of(cell.tone)));
-      }
+  // resized since it was drawn: what fits
+  const auto rows = std::min(canvas.rows(), static_cast<std::size_t>(LINES));
+  const auto columns = std::min(canvas.columns(), static_cast<std::size_t>(COLS));
+  for (std::size_t row = 0; row < rows; ++row) {
+    move(static_cast<int>(row), 0);
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Canvas::Cell& cell = canvas.cells[row][column];
+      addch(static_cast<chtype>(cell.character) | static_cast<chtype>(attributes_of(cell.tone)));
     }
   }
   refresh();
+}
+
+std::size_t Terminal::rows() const {
+  return static_cast<std::size_t>(LINES);
+}
+
+std::size_t Terminal::columns() const {
+  return static_cast<std::size_t>(COLS);
 }
 
 std::optional<std::string> Terminal::key() {

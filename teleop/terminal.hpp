@@ -16,7 +16,10 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // Shows a message instead if the terminal is smaller than the canvas.
+  // The terminal's present size.
+  std::size_t rows() const;
+  std::size_t columns() const;
+  // Shows as much of it as fits.
   void show(const Canvas& canvas);
   // Returns a pending key without waiting; nullopt: none. Unknown keys are "?", whatever bytes the terminal sends for
   // them.

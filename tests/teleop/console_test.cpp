@@ -112,6 +112,25 @@ TEST_CASE("Keys and speed make the wish") {
   CHECK_FALSE(desk.wish(12).deadman);
 }
 
+TEST_CASE("Space stands: flippers under way are ordered to stay where they are, and none is where none was ordered") {
+  Desk desk;
+  Status status{};
+  status.mode = Mode::ready;
+  status.fields = kHasFlippers;
+  status.flipper_deg = {10, 20, 30, 181};
+  desk.act(Action::stand, 10, &status);
+  CHECK(desk.flipper_order() == 0);
+  desk.act(Action::posture_2, 10, &status);
+  desk.act(Action::stand, 10, &status);
+  CHECK(desk.flipper_order() == 2);
+  CHECK(desk.wish(10).flipper_deg == std::array{10.0, 20.0, 30.0, 180.0});  // 180: as far as it may be ordered
+  CHECK(desk.posture() == "held");
+  // what was not measured is not ordered
+  status.fields = 0;
+  desk.act(Action::stand, 10, &status);
+  CHECK(desk.flipper_order() == 2);
+}
+
 TEST_CASE("A gamepad's sticks go before keys, and never beyond the speed") {
   Desk desk;
   desk.act(Action::forward, 10, nullptr);

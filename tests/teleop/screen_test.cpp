@@ -1,6 +1,6 @@
-// The console's screen is tested as characters: it stays within 80 x 24 and within printable ASCII. Mode, halt, silence
-// and the holder of the robot stand there in words, and the posture is drawn as it is, so that front flippers that are
-// up lie above the body's front.
+// The console's screen is tested as characters: it stays within its size and within printable ASCII. Mode, halt,
+// silence and the holder of the robot stand there in words, and the posture is drawn as it is, so that front flippers
+// that are up lie above the body's front.
 #include "teleop/screen.hpp"
 
 #include <catch2/catch.hpp>
@@ -36,7 +36,7 @@ struct Scene {
 
 std::string text_of_screen(const Canvas& canvas) {
   std::string text;
-  for (std::size_t row = 0; row < kRows; ++row) text += canvas.line(row) + "\n";
+  for (std::size_t row = 0; row < canvas.rows(); ++row) text += canvas.line(row) + "\n";
   return text;
 }
 
@@ -107,6 +107,60 @@ TEST_CASE("What was not measured is not shown as a number") {
   CHECK(has(plain_line(scene.view(10)), "  tracks 198 201 mm/s  nose up -  flippers 58 58 -20 -20  battery - V"));
   scene.status.fields = status_to_show().fields;
   CHECK(has(plain_line(scene.view(10)), "  nose up 23.4  flippers 58 58 -20 -20  battery 25.6 V"));
+}
+
+TEST_CASE("On 60 x 20 nothing is cut, and smaller terminals still show link and mode") {
+  Scene scene;
+  scene.health.sent(1, 9.7);
+  scene.status.newest_wish = 1;
+  scene.health.heard(scene.status, 9.9);
+  const Canvas small = draw_screen(scene.view(10), 20, 60);
+  CHECK(small.rows() == 20);
+  CHECK(small.columns() == 60);
+  const std::string text = text_of_screen(small);
+  for (const char* part :
+       {"link   ok  200 ms  lost 0/0 %  heard 0.10 s ago", "robot  DRIVING", "driven     198    201  mm/s",
+        "battery    25.6 V", "nose up 23.4 roll 1.0 right yaw 5 left\n", "place 0.84 0.00 0.20 m (true)\n",
+        "+-: speed\n", "Q quit\n", "6tall\n", "o/l p/;\n"}) {
+    INFO(part);
+    CHECK(has(text, part));
+  }
+  // of 1 row, of 2, of 10
+  CHECK(has(text_of_screen(draw_screen(scene.view(10), 1, 40)), "link   ok"));
+  for (const std::size_t rows : {2u, 10u}) {
+    const std::string least = text_of_screen(draw_screen(scene.view(10), rows, 40));
+    CHECK(has(least, "link   ok"));
+    CHECK(has(least, "DRIVING"));
+  }
+  draw_screen(scene.view(10), 0, 0);
+}
+
+TEST_CASE("A large terminal is used: rules over its width, help at its end, figures at its right, a larger drawing") {
+  Scene scene;
+  const Canvas large = draw_screen(scene.view(10), 60, 160);
+  CHECK(large.line(4) == std::string(160, '-'));
+  CHECK(has(large.line(59), "flippers up/down"));
+  CHECK(large.line(5).substr(120, 6) == "tracks");
+  // 36 more rows: (50 - 5) / 9 = 5 times as high, (120 - 1) / 38 = 3 times as wide; 3 times. The body's middle is in
+  // row 5 + 27 / 2 and column 1 + 114 / 2.
+  CHECK(large.cells[5 + 13][1 + 57].character == '>');
+}
+
+TEST_CASE("A rounded zero has no sign, and left is called left") {
+  Scene scene;
+  scene.status.track_mmps = {-0.3, 0.3};
+  scene.status.flipper_deg = {-0.2, 0, 0, 0};
+  scene.status.posture_deg = {-0.04, -0.01, -0.3};
+  scene.status.pose_mm = {-1, -4, 0};
+  const std::string text = text_of_screen(draw_screen(scene.view(10)));
+  CHECK_FALSE(has(text, "-0 "));
+  CHECK_FALSE(has(text, "-0.0"));
+  CHECK(has(text, "nose up 0.0 roll 0.0 yaw 0 "));
+  scene.health.heard(scene.status, 9.9);
+  CHECK(has(plain_line(scene.view(10)), "  tracks 0 0 mm/s  nose up 0.0  flippers 0 0 0 0"));
+  // z-y-x angles of a body with x forward, y left: a positive roll lowers the right side, a positive yaw turns left
+  scene.status.posture_deg = {-30, 41, -120};
+  CHECK(has(text_of_screen(draw_screen(scene.view(10))), "nose DOWN 41.0 roll 30.0 left yaw 120 right"));
 }
 
 TEST_CASE("The posture is drawn as it is") {
