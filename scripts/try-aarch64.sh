@@ -4,14 +4,14 @@
 #
 #   scripts/try-aarch64.sh     exit status 0: the square closed within 10 mm and 2 degrees
 #
-# Needs g++-aarch64-linux-gnu, qemu-user-static, and what scripts/install-dependencies.sh build installs. TurboJPEG for ARM is
-# taken from Debian's packages into build/aarch64; nothing is installed. KENAF_BIN: a folder that has kenaf-relayd, else it
-# is built. KENAF_MIRROR: of Debian's packages.
+# Needs g++-aarch64-linux-gnu, qemu-user-static, and what scripts/install-dependencies.sh build installs. What the libraries need
+# is taken from Debian's packages into build/aarch64; nothing is installed. RELAYD_FOLDER: a folder that has kenaf-relayd, else it
+# is built. DEBIAN_MIRROR: of Debian's packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=$PWD/build/aarch64
-mirror=${KENAF_MIRROR:-http://deb.debian.org/debian}
-bin=${KENAF_BIN:-$PWD/build/install/bin}
+mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+bin=${RELAYD_FOLDER:-$PWD/build/install/bin}
 mkdir -p "$out"
 step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
 fail() { printf 'try-aarch64: %s\n' "$*" >&2; exit 1; }
@@ -23,7 +23,7 @@ for tool in aarch64-linux-gnu-g++ qemu-aarch64-static; do
   command -v "$tool" >/dev/null || fail "$tool is not installed (packages g++-aarch64-linux-gnu, qemu-user-static)"
 done
 
-step "TurboJPEG for ARM"
+step "what the libraries need, for ARM"
 # An apt of its own: this machine's need not know that architecture.
 release=$(. /etc/os-release && echo "$VERSION_CODENAME")
 mkdir -p "$out/apt/lists/partial" "$out/apt/cache/archives/partial"
@@ -33,16 +33,18 @@ apt=(apt-get -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::Stat
   -o Dir::Etc::SourceParts=/dev/null)
 rm -f "$out"/*.deb
 quietly apt.log "${apt[@]}" update
-(cd "$out" && quietly apt.log "${apt[@]}" download libturbojpeg0 libturbojpeg0-dev)
+(cd "$out" && quietly apt.log "${apt[@]}" download libfmt-dev libfmt9 libtomlplusplus-dev libturbojpeg0 libturbojpeg0-dev)
 for package in "$out"/*.deb; do dpkg-deb -x "$package" "$out/root"; done
 
 step "both libraries and the examples for ARM"
 lib=$out/root/usr/lib/aarch64-linux-gnu
 emulator=(qemu-aarch64-static -L /usr/aarch64-linux-gnu)
 quietly library.log cmake -S . -B "$out/library" -DCMAKE_BUILD_TYPE=Release -DKENAF_COMPILE_TOGETHER=ON \
-  -DKENAF_BUILD_SIMULATOR=OFF -DKENAF_BUILD_TESTS=OFF -DKENAF_BUILD_EXAMPLES=ON -DCMAKE_DISABLE_FIND_PACKAGE_Curses=ON \
+  -DKENAF_BUILD_SIMULATOR=OFF -DKENAF_BUILD_TESTS=OFF -DKENAF_BUILD_EXAMPLES=ON \
+  -DCMAKE_DISABLE_FIND_PACKAGE_Curses=ON -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON \
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
   -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ \
+  -Dfmt_DIR="$lib/cmake/fmt" -DKENAF_TOML_FOLDER="$out/root/usr/include" \
   -DKENAF_TURBOJPEG_FOLDER="$out/root/usr/include" -DKENAF_TURBOJPEG_LIBRARY="$lib/libturbojpeg.so"
 quietly library.log cmake --build "$out/library" -j "$(nproc)"
 for library in sim real; do
@@ -52,7 +54,7 @@ for library in sim real; do
 done
 
 step "the square"
-if [ -z "${KENAF_BIN:-}" ]; then
+if [ -z "${RELAYD_FOLDER:-}" ]; then
   quietly relayd.log cmake --preset install
   quietly relayd.log cmake --build --preset install --target kenaf-relayd
 fi

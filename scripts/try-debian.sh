@@ -8,9 +8,9 @@
 #             made, if they are there
 #   whole     the same, and everything else with its tests (about an hour); bookworm alone, for Debian 13 has no libsdformat
 #
-# Needs root, or sudo, and debootstrap; 1 GB of disk for the libraries, 6 GB for the whole, below KENAF_CHROOTS
-# (/var/tmp/kenaf-chroots). The folder is removed at the end, unless KENAF_CHROOTS is set. KENAF_MIRROR: of Debian's
-# packages. KENAF_JOBS: how many compilers at once (all cores).
+# Needs root, or sudo, and debootstrap; 1 GB of disk for the libraries, 6 GB for the whole, below CHROOTS
+# (/var/tmp/kenaf-chroots). The folder is removed at the end, unless CHROOTS is set. DEBIAN_MIRROR: of Debian's
+# packages. JOBS: how many compilers at once (all cores).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 release=${1:-} part=${2:-library}
@@ -23,9 +23,9 @@ case $part in library | whole) ;; *) echo "try-debian: '$part' is neither 'libra
 command -v debootstrap >/dev/null || { echo "try-debian: install debootstrap" >&2; exit 2; }
 as_root=()
 [ "$(id -u)" = 0 ] || as_root=(sudo)
-mirror=${KENAF_MIRROR:-http://deb.debian.org/debian}
-root=${KENAF_CHROOTS:-/var/tmp/kenaf-chroots}/$release
-jobs=${KENAF_JOBS:-$(nproc)}
+mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+root=${CHROOTS:-/var/tmp/kenaf-chroots}/$release
+jobs=${JOBS:-$(nproc)}
 home=/home/kenaf/kenaf  # of the source, in the chroot
 out=$PWD/build/debian/$release
 mkdir -p "$out"
@@ -44,7 +44,7 @@ quietly() {  # LOG COMMAND...
 mounted=
 clean_up() {
   [ -z "$mounted" ] || "${as_root[@]}" umount "$root/proc" "$root/dev/shm" || true
-  [ -n "${KENAF_CHROOTS:-}" ] || "${as_root[@]}" rm -rf --one-file-system "$root"
+  [ -n "${CHROOTS:-}" ] || "${as_root[@]}" rm -rf --one-file-system "$root"
 }
 trap clean_up EXIT
 

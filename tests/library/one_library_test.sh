@@ -4,13 +4,13 @@
 #
 #   one_library_test.sh LIBKENAF_SIM LIBKENAF_REAL SOURCE_DIR CC
 #
-# KENAF_EMULATOR: what runs programs for another machine.
+# EMULATOR: what runs programs for another machine.
 set -euo pipefail
 sim=$1 real=$2 source=$3 cc=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { printf 'one_library_test: %s\n' "$*" >&2; exit 1; }
-IFS=';' read -ra emulator <<<"${KENAF_EMULATOR:-}"
+IFS=';' read -ra emulator <<<"${EMULATOR:-}"
 folder=$(dirname "$sim")
 abi=$(sed -n 's/^#define HRT_ABI //p' "$source/include/kenaf/hrt.h")
 
