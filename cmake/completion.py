@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 import textwrap
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 # Which folder of share/kenaf has the names of an option's shipped files, and how they end.
 SHIPPED = {"--robot": ("robots", "toml"), "--world": ("worlds", "sdf")}
@@ -164,7 +164,8 @@ def bash(program, commands):
         files = ' [[ $current == -* ]] ||' if command.takes_files else ""
         action = f'COMPREPLY=($(compgen -W "{words}" -- "$current"))'
         if command.takes_files:
-            action += f';{files} {{ COMPREPLY=($(compgen -f -- "$current")); compopt -o filenames 2>/dev/null; }}'
+            also = f'-W "{" ".join(names)}" ' if not command.name and names else ""
+            action += f';{files} {{ COMPREPLY=($(compgen {also}-f -- "$current")); compopt -o filenames 2>/dev/null; }}'
         options.append(f"    {command.name or chr(34) * 2}) {action} ;;")
     text = BASH.replace("@commands@", " | ".join(names) or "''")
     text = text.replace("@values@", "\n".join(values)).replace("@options@", "\n".join(options))
@@ -233,10 +234,13 @@ __@function@_listed() {{
         text += "  " + zsh_arguments(commands[0]) + "\n"
     else:
         text += "  local state line\n  local -a commands_of\n"
-        text += "  " + zsh_arguments(commands[0], ["'1: :->command'", "'*:: :->arguments'"]) + "\n"
+        # a file may stand in a command's place
+        files = "; _files" if commands[0].takes_files else ""
+        whole = replace(commands[0], takes_files=False)
+        text += "  " + zsh_arguments(whole, ["'1: :->command'", "'*:: :->arguments'"]) + "\n"
         text += "  case $state in\n  command)\n    commands_of=(\n"
         text += "".join(f"      '{command.name}:{zsh_word(short(command.words))}'\n" for command in named)
-        text += "    )\n    _describe command commands_of ;;\n  arguments)\n    case $line[1] in\n"
+        text += "    )\n    _describe command commands_of" + files + " ;;\n  arguments)\n    case $line[1] in\n"
         for command in named:
             text += f"    {command.name})\n    {zsh_arguments(command)} ;;\n"
         text += "    esac ;;\n  esac\n"

@@ -6,11 +6,10 @@
 #
 # Needs g++-aarch64-linux-gnu, qemu-user-static, and what scripts/install-dependencies.sh build installs. What the libraries need
 # is taken from Debian's packages into build/aarch64; nothing is installed. RELAYD_FOLDER: a folder that has kenaf-relayd, else it
-# is built. DEBIAN_MIRROR: of Debian's packages.
+# is built. DEBIAN_MIRROR: of Debian's packages (default: this machine's first).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=$PWD/build/aarch64
-mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 bin=${RELAYD_FOLDER:-$PWD/build/install/bin}
 mkdir -p "$out"
 step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
@@ -24,6 +23,7 @@ for tool in aarch64-linux-gnu-g++ qemu-aarch64-static; do
 done
 
 step "what the libraries need, for ARM"
+mirror=${DEBIAN_MIRROR:-$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | sed -n 1p)}
 # An apt of its own: this machine's need not know that architecture.
 release=$(. /etc/os-release && echo "$VERSION_CODENAME")
 mkdir -p "$out/apt/lists/partial" "$out/apt/cache/archives/partial"

@@ -23,7 +23,7 @@ case $part in library | whole) ;; *) echo "try-debian: '$part' is neither 'libra
 command -v debootstrap >/dev/null || { echo "try-debian: install debootstrap" >&2; exit 2; }
 as_root=()
 [ "$(id -u)" = 0 ] || as_root=(sudo)
-mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
+mirror=${DEBIAN_MIRROR:-}  # empty: the one that debootstrap has
 root=${CHROOTS:-/var/tmp/kenaf-chroots}/$release
 jobs=${JOBS:-$(nproc)}
 home=/home/kenaf/kenaf  # of the source, in the chroot
@@ -49,7 +49,7 @@ clean_up() {
 trap clean_up EXIT
 
 step "debootstrap"
-[ -e "$root/etc/debian_version" ] || quietly debootstrap.log "${as_root[@]}" debootstrap --variant=minbase "$release" "$root" "$mirror"
+[ -e "$root/etc/debian_version" ] || quietly debootstrap.log "${as_root[@]}" debootstrap --variant=minbase "$release" "$root" ${mirror:+"$mirror"}
 "${as_root[@]}" mount -t proc proc "$root/proc"
 "${as_root[@]}" mkdir -p "$root/dev/shm"
 "${as_root[@]}" mount -t tmpfs tmpfs "$root/dev/shm"

@@ -4,7 +4,7 @@
 #
 #   scripts/try-package.sh [BUILD_DIR]      default: build/install, which must be built
 #
-# Needs root, debootstrap, and a mirror (MIRROR, default http://deb.debian.org/debian). The Debian is made below CHROOTS
+# Needs root, debootstrap, and a mirror (DEBIAN_MIRROR, default: debootstrap's). The Debian is made below CHROOTS
 # (default /tmp/chroots), takes 2 GB and goes at the end. Processes and ports are in namespaces of their own. About five
 # minutes. Exit status 0: all of it worked.
 set -euo pipefail
@@ -23,8 +23,8 @@ if [ "${1:-}" != --inside ]; then
   trap 'umount "$root/proc" 2>/dev/null || true; rm -rf --one-file-system "$root"' EXIT
   log=$root.log
 
-  say "Debian 12 in $root"
-  debootstrap --variant=minbase bookworm "$root" "${MIRROR:-http://deb.debian.org/debian}" >"$log" 2>&1 || { tail "$log"; fail debootstrap; }
+  say "a fresh Debian 12"
+  debootstrap --variant=minbase bookworm "$root" ${DEBIAN_MIRROR:+"$DEBIAN_MIRROR"} >"$log" 2>&1 || { tail "$log"; fail debootstrap; }
   chmod 755 "$root"
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   mkdir "$root/new" "$root/old"

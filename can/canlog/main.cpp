@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -27,6 +28,7 @@
 #include "can/canlog/rules.hpp"
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
+#include "formats/settings/nearest_word.hpp"
 
 namespace {
 
@@ -44,7 +46,9 @@ canlog::Log load_log(const Options& options) {
   std::ifstream file;
   if (options.log != "-") {
     file.open(options.log);
-    if (!file) throw std::runtime_error(options.log + ": cannot be opened");
+    if (!file)
+      throw std::runtime_error(options.log + ": cannot be opened" +
+                               settings::did_you_mean(options.log, std::array{std::string("eds")}));
   }
   try {
     return canlog::read_log(options.log == "-" ? std::cin : file, options.interface);

@@ -27,6 +27,7 @@ struct Command {
   std::vector<Option> options;
   std::vector<std::string> subcommands;
   bool takes_any_number = false;  // of arguments beside its options
+  bool takes_arguments = false;
 };
 
 std::vector<std::string> programs() {
@@ -50,7 +51,11 @@ Command described(const test::TemporaryFolder& folder, const std::string& words)
   const Outcome help = run(folder, words + " --help");
   INFO(words << " --help: " << help.error);
   REQUIRE(help.status == 0);
-  Command command{words, {}, {}, std::regex_search(help.out, std::regex(R"(\.\.\.)"))};
+  Command command{words,
+                  {},
+                  {},
+                  std::regex_search(help.out, std::regex(R"(\.\.\.)")),
+                  help.out.find("\nPositionals:\n") != std::string::npos};
   std::istringstream lines(help.out);
   bool in_subcommands = false;
   std::smatch match;
@@ -150,8 +155,9 @@ TEST_CASE("Every program: words that do not exist, arguments that are not expect
         check_refused(folder, command.words + " zz zz zz zz", "not expected: zz");
       for (const std::string& sub : command.subcommands) {
         const std::string misspelt = sub + "z";
-        check_refused(folder, command.words + " " + misspelt,
-                      misspelt + ": no such subcommand; did you mean " + sub + "?");
+        // where a file may stand in a subcommand's place, the word is a file that is not there
+        const std::string what = command.takes_arguments ? "" : ": no such subcommand";
+        check_refused(folder, command.words + " " + misspelt, what + "; did you mean " + sub + "?");
       }
     }
     const std::string variable = "KENAF_DATADIR=/tmp";
@@ -228,7 +234,8 @@ TEST_CASE("A shipped description whose name is misspelt, and addresses that are 
     if (std::ranges::find(all, program_of(command)) != all.end()) check_refused(folder, command, words);
   };
   for (const std::string program : {"kenaf-world", "kenaf-relayd --embedded", "kenaf-candrives"}) {
-    check(program + " --world flatt", "--world flatt: must be the path of a file that ends in .sdf, or one of flat,");
+    check(program + " --world flatt",
+          "--world flatt: must be the path of a file that ends in .sdf, or one of boxes, flat,");
     check(program + " --world flatt", "; did you mean flat?");
     check(program + " --robot kenaff", "; did you mean kenaf?");
   }

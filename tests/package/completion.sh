@@ -53,6 +53,7 @@ for program in $(programs); do
   zsh -f -c '
     _arguments() { print -rl -- "$@"; [[ -z $state_wanted ]] || state=$state_wanted }
     _describe() { print -rl -- "${(@P)2}" }
+    _files() { print files }
     state_wanted=command; words=('"$program"' ""); CURRENT=2
     source '"$functions/_$program" >said || fail "_$program failed"
   while read -r option; do
