@@ -118,6 +118,8 @@ TEST_CASE("What is wrong in a file is named with line and column, and nothing is
   // 2^53 + 1, which no double is
   CHECK_THAT(toml_error("period_s = 9007199254740993"), Catch::Contains("period_s must be from 0.001 to 1, not 9"));
   CHECK_THAT(toml_error("period_s = = 3"), Catch::StartsWith("kenaf.toml:1:12: "));
+  for (const std::string header : {"[!a]", "[", "[[=]]", "[\x01]"})
+    CHECK_THAT(toml_error(header), Catch::StartsWith("kenaf.toml:1:"));
 }
 
 TEST_CASE("The environment overrides the file") {
