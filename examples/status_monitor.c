@@ -1,5 +1,6 @@
 /* Prints how the robot was set up, and its state twice a second of robot time, without moving it. Usage:
- * status_monitor [COUNT], default 10. It opens the robot as it stands (reset_robot = 0), so it is also a way to see where the last program has left it. */
+ * status_monitor [COUNT], default 10. It opens the robot as it stands (reset_robot = 0), so it is also a way to see
+ * where the last program has left it. */
 #include <kenaf/hrt.h>
 #include <stdio.h>
 #include <stdlib.h>

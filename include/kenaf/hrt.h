@@ -335,9 +335,9 @@ typedef struct hrt_state {
   double gyro_degps[3];                /* turn rate about x, y, z of the body */
   double acceleration_mmps2[3];        /* along x, y, z of the body; at rest on level ground 0, 0, +9807 */
 
-  double track_mm[2];   /* travel of each track's surface since the robot was placed or switched on */
-  double track_mmps[2]; /* and its speed */
-  double track_a[2];    /* motor currents */
+  double track_mm[2];    /* travel of each track's surface since the robot was placed or switched on */
+  double track_mmps[2];  /* and its speed */
+  double track_a[2];     /* motor currents */
   double flipper_deg[4]; /* 0 for one that the robot has not */
   double flipper_a[4];
   double battery_v;
