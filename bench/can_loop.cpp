@@ -62,8 +62,8 @@ int main(int argc, char** argv) {
   const kenaf::support::TemporaryFolder folder;
   std::optional<kenaf::support::Process> drives;
   if (!no_drives)
-    drives.emplace(std::vector<std::string>{KENAF_BIN_DIR "/kenaf-candrives", "--interface", interface, "--robot",
-                                            robot, "--ideal"},
+    drives.emplace(std::vector<std::string>{std::string(KENAF_BIN_DIR) + "/kenaf-candrives", "--interface", interface,
+                                            "--robot", robot, "--ideal"},
                    folder.path() / "drives.log");
   hrt_config config = hrt_config_default();
   config.period_s = period_s;
