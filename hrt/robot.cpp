@@ -12,6 +12,7 @@
 #include "hrt/motion_forward.hpp"
 #include "hrt/motion_turn.hpp"
 #include "hrt/quiet_thread.hpp"
+#include "hrt/warnings.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::hrt {
@@ -37,11 +38,6 @@ constexpr double kCycleRounding = 1e-3;
 constexpr std::size_t kMostWarning = 2048, kMostDue = 256;
 
 constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
-
-// One line of both.
-std::string joined(const std::string& one, const std::string& other) {
-  return one + (one.empty() || other.empty() ? "" : "; ") + other;
-}
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 #include "can/canbus/bus_layout.hpp"
 #include "can/canbus/robot_bus.hpp"
 #include "hrt/error.hpp"
+#include "hrt/warnings.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/drive_targets.hpp"
@@ -24,6 +25,7 @@ namespace kenaf::real {
 namespace {
 
 using hrt::Error;
+using hrt::joined;
 
 // The heading bias is learnt during this time, while the robot stands; also the time after which it counts as standing.
 constexpr double kStand_s = 0.5;
@@ -44,11 +46,6 @@ std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm
       "track_gauge_mm is {:.0f}, but the robot's description has tracks that are {:.0f} mm apart "
       "(left_center_m): turns come out wrong",
       configured_mm, described_mm);
-}
-
-// One line of both.
-std::string joined(const std::string& one, const std::string& other) {
-  return one + (one.empty() || other.empty() ? "" : "; ") + other;
 }
 
 // The warnings of all cases, since no cycle is to allocate: what the start has found, with and without a silent sensor.

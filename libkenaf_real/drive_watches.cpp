@@ -8,6 +8,7 @@
 #include "can/canbus/bus_layout.hpp"
 #include "can/canbus/node_setup.hpp"
 #include "hrt/error.hpp"
+#include "hrt/warnings.hpp"
 #include "libkenaf_real/commissioning.hpp"
 
 namespace kenaf::real {
@@ -138,10 +139,10 @@ std::string warning_of_watches(const RobotBus& bus, const AllWatches& watches) {
   if (!no_heartbeat.empty())
     text = fmt::format("no watch of the master's heartbeat (0x1016), only of commands: {}", no_heartbeat);
   if (!no_timer.empty())
-    text += fmt::format(
-        "{}no watch of commands (0x1400:05), only of the master's heartbeat: {}; if that is known: "
-        "`event_timer = false` in [can]",
-        text.empty() ? "" : "; ", no_timer);
+    text =
+        hrt::joined(text, fmt::format("no watch of commands (0x1400:05), only of the master's heartbeat: {}; if that "
+                                      "is known: `event_timer = false` in [can]",
+                                      no_timer));
   return text;
 }
 
