@@ -12,6 +12,12 @@ double wrap_angle(double angle_rad) {
   return wrapped_rad <= -std::numbers::pi ? std::numbers::pi : wrapped_rad;
 }
 
+void unwrap(std::span<double> angles_rad) {
+  constexpr double kTurn_rad = 2 * std::numbers::pi;
+  for (std::size_t i = 1; i < angles_rad.size(); ++i)
+    angles_rad[i] -= kTurn_rad * std::round((angles_rad[i] - angles_rad[i - 1]) / kTurn_rad);
+}
+
 double reachable_angle(double wanted_rad, double present_rad, double min_rad, double max_rad) {
   constexpr double kTurn_rad = 2 * std::numbers::pi, kRounding_rad = 1e-9;
   const double wanted = wrap_angle(wanted_rad);

@@ -3,10 +3,15 @@
 // Thread safety: pure functions.
 #pragma once
 
+#include <span>
+
 namespace kenaf::robot {
 
 // The same direction in (-pi, pi].
 double wrap_angle(double angle_rad);
+
+// Adds whole turns to angles that jump by more than half a one, so that they can be interpolated and summed.
+void unwrap(std::span<double> angles_rad);
 
 // Returns the angle to which a joint with limits turns for a wanted direction: the equivalent angle (modulo a full
 // turn) within the limits that is nearest to the present one, or the nearer limit if none is within them.

@@ -6,6 +6,7 @@
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/logs/course.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -44,7 +45,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     if (series.t_s.empty()) continue;
 
     // sums by span, in the order of time
-    if (channel.angle) logs::unwrap(series.value);
+    if (channel.angle) robot::unwrap(series.value);
     series.interval_s = series.t_s.size() > 1 ? logs::median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
       // a time on a border belongs to the later span, despite rounding
@@ -78,7 +79,7 @@ std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const S
 
   // angles are continued past +-pi, on the turn on which the measured one starts
   if (channel.angle) {
-    logs::unwrap(value);
+    robot::unwrap(value);
     const double turns = std::round((series.value.front() - value.front()) / kTurn);
     for (double& angle : value) angle += kTurn * turns;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "gap/logs/median.hpp"
@@ -60,12 +59,6 @@ double range(std::span<const double> column) {
     most = std::max(most, value);
   }
   return most >= least ? most - least : 0;
-}
-
-void unwrap(std::vector<double>& angles_rad) {
-  constexpr double kTurn_rad = 2 * std::numbers::pi;
-  for (std::size_t i = 1; i < angles_rad.size(); ++i)
-    angles_rad[i] -= kTurn_rad * std::round((angles_rad[i] - angles_rad[i - 1]) / kTurn_rad);
 }
 
 double median_step(std::span<const double> t_s, std::span<const double> value) {

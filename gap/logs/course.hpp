@@ -28,9 +28,6 @@ double mean_rate(const Course& course, double t_s, double window_s);
 // Largest less smallest value of a column; empty cells (NaN) are left out. 0 if it has no value.
 double range(std::span<const double> column);
 
-// Adds whole turns to angles that jump by more than half a one, so that they can be interpolated.
-void unwrap(std::vector<double>& angles_rad);
-
 // Median step between times that have a value; NaN with fewer than two of them.
 double median_step(std::span<const double> t_s, std::span<const double> value);
 

@@ -12,6 +12,7 @@
 #include "gap/logs/merge_pose.hpp"
 #include "gap/recordings/pose_of_samples.hpp"
 #include "gap/recordings/recording_error.hpp"
+#include "robot/angles.hpp"
 #include "robot/columns.hpp"
 
 namespace kenaf::gap::recordings {
@@ -35,7 +36,7 @@ std::vector<double> interpolated(const Samples& samples, std::span<const double>
                                  std::optional<double> max_gap_s, bool wraps) {
   const double gap_s = max_gap_s.value_or(kStepsOfGap * logs::median_step(samples.t_s, samples.t_s));
   logs::Course course{samples.t_s, samples.value, gap_s};
-  if (wraps) logs::unwrap(course.value);
+  if (wraps) robot::unwrap(course.value);
   std::vector<double> values;
   for (const double t : rows_s) {
     const double value = logs::value_at(course, t);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "robot/angles.hpp"
 #include "tools/draw/noise.hpp"
 
 namespace kenaf::draw {
@@ -14,18 +15,11 @@ namespace {
 constexpr double kLeastTurn_rad = 3 * std::numbers::pi / 180;  // chosen: nobody sees less as a turn
 constexpr double kTurnInNoises = 15;                           // chosen: as of a path's steps
 
-std::vector<double> unwrapped(std::span<const double> yaw_rad) {
-  std::vector<double> out;
-  for (const double yaw : yaw_rad) {
-    out.push_back(out.empty() ? yaw : out.back() + std::remainder(yaw - out.back(), 2 * std::numbers::pi));
-  }
-  return out;
-}
-
 }  // namespace
 
 Turns turns_of(std::span<const double> yaw_rad) {
-  const std::vector<double> yaw = unwrapped(yaw_rad);
+  std::vector<double> yaw(yaw_rad.begin(), yaw_rad.end());
+  robot::unwrap(yaw);
   if (yaw.empty()) return {0, 0};
   const double least_rad = std::max(kLeastTurn_rad, kTurnInNoises * noise_of(yaw));
 
