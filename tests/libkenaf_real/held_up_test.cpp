@@ -26,6 +26,23 @@ std::shared_ptr<std::vector<std::uint16_t>> watch_controlwords(RobotOnBus& robot
   return words;
 }
 
+// Drives on after a pause that has ended the program's control: nothing but one quick stop for each drive is sent.
+// Returns the error's words.
+std::string words_of_loss(RobotOnBus& robot, bool has_state) {
+  const auto words = watch_controlwords(robot);
+  std::string said;
+  try {
+    if (has_state) robot.transport.send(drive_at(0.2, 0.2));
+    robot.run(3, drive_at(0.2, 0.2));
+    FAIL("it drives on");
+  } catch (const hrt::Error& error) {
+    CHECK(error.code() == HRT_E_LINK);
+    said = error.what();
+  }
+  CHECK(*words == std::vector<std::uint16_t>(robot.description.drives.size(), canopen::kControlQuickStop));
+  return said;
+}
+
 // From SYNC to SYNC, of the target that a drive has: the last one that came. In its units.
 std::int32_t longest_step(const RobotOnBus& robot, std::uint16_t command_id) {
   std::int32_t longest = 0;
@@ -51,16 +68,8 @@ TEST_CASE("A program that was held up for longer than its drives wait for it say
     const canopen::Time begin = robot.wire.now();
     robot.wire.hold_up_until(begin + milliseconds(300));
     REQUIRE(robot.all_are(PowerState::quick_stop_active));
-    const auto words = watch_controlwords(robot);
-    try {
-      if (has_state) robot.transport.send(drive_at(0.2, 0.2));
-      robot.run(3, drive_at(0.2, 0.2));
-      FAIL("it drives on");
-    } catch (const hrt::Error& error) {
-      CHECK(error.code() == HRT_E_LINK);
-      CHECK_THAT(error.what(), Catch::Contains("was held up for 0.3") && Catch::Contains("stopped by themselves"));
-    }
-    CHECK(*words == std::vector<std::uint16_t>(robot.description.drives.size(), canopen::kControlQuickStop));
+    CHECK_THAT(words_of_loss(robot, has_state),
+               Catch::Contains("was held up for 0.3") && Catch::Contains("stopped by themselves"));
     for (const candrives::LoggedFrame& one : robot.wire.log())
       CHECK_FALSE((one.at > begin + milliseconds(100) && one.frame.id == 0x77f));
     robot.transport.close();
@@ -80,17 +89,9 @@ TEST_CASE("A computer that was suspended says nothing but quick stop when it wak
       robot.wire.suspend_until(robot.wire.now() + slept);
       const bool have_stopped = slept > milliseconds(100);
       CHECK(robot.all_are(have_stopped ? PowerState::quick_stop_active : PowerState::operation_enabled));
-      const auto words = watch_controlwords(robot);
-      try {
-        if (has_state) robot.transport.send(drive_at(0.2, 0.2));
-        robot.run(3, drive_at(0.2, 0.2));
-        FAIL("it drives on");
-      } catch (const hrt::Error& error) {
-        CHECK(error.code() == HRT_E_LINK);
-        CHECK_THAT(error.what(), Catch::Contains(have_stopped ? "this computer was suspended for 5.00 s"
-                                                              : "this computer was suspended for 0.03 s"));
-      }
-      CHECK(*words == std::vector<std::uint16_t>(robot.description.drives.size(), canopen::kControlQuickStop));
+      CHECK_THAT(words_of_loss(robot, has_state),
+                 Catch::Contains(have_stopped ? "this computer was suspended for 5.00 s"
+                                              : "this computer was suspended for 0.03 s"));
       // the next session counts anew
       robot.transport.close();
       robot.open();

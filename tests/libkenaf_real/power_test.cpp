@@ -27,6 +27,12 @@ hrt::Error error_of_closing(RobotOnBus& robot) {
   return {HRT_OK, ""};
 }
 
+void lose_quick_stops_of_node_2(RobotOnBus& robot) {
+  robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
+    return sender != Sender::master || frame.id != 0x202 || word_of(frame) != canopen::kControlQuickStop;
+  };
+}
+
 }  // namespace
 
 TEST_CASE("Closing stops a track also where its first order to stop is lost") {
@@ -49,9 +55,7 @@ TEST_CASE("A drive that does not get its quick stop misses its commands, and clo
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
-  robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
-    return sender != Sender::master || frame.id != 0x202 || word_of(frame) != canopen::kControlQuickStop;
-  };
+  lose_quick_stops_of_node_2(robot);
   CHECK(error_of_closing(robot).code() == HRT_OK);
   CHECK(robot.stands());
   CHECK(robot.all_are(PowerState::quick_stop_active));
@@ -62,9 +66,7 @@ TEST_CASE("Closing leaves a drive that does not stop to its watch of the heartbe
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
   robot.wire.inject({candrives::FaultKind::no_event_timer, 2});
-  robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
-    return sender != Sender::master || frame.id != 0x202 || word_of(frame) != canopen::kControlQuickStop;
-  };
+  lose_quick_stops_of_node_2(robot);
   const hrt::Error error = error_of_closing(robot);
   CHECK(error.code() == HRT_E_DEVICE);
   CHECK_THAT(error.what(), Catch::Contains("track right (node 2)") && Catch::Contains("operation enabled"));
