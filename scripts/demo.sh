@@ -58,20 +58,8 @@ KENAF_RELAY="127.0.0.1:$relay_port" KENAF_RECORD="$out/square.csv" "$bin/square_
 
 "$bin/kenaf-draw" "$out/square.csv" --world flat --out "$out/square.png"
 
-# The closing error, from the simulator's ground truth: first against last row that has a pose.
-awk -F, '
-  NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
-  $column["x_m"] != "" {
-    x = $column["x_m"]; y = $column["y_m"]; yaw = $column["yaw_rad"]
-    if (!seen++) { x0 = x; y0 = y; yaw0 = yaw }
-  }
-  END {
-    if (!seen) { print "demo: the record holds no pose"; exit 1 }
-    pi = atan2(0, -1)
-    millimetres = 1000 * sqrt((x - x0) ^ 2 + (y - y0) ^ 2)
-    degrees = atan2(sin(yaw - yaw0), cos(yaw - yaw0)) * 180 / pi
-    if (degrees < 0) degrees = -degrees
-    printf "demo: the square closed within %.1f mm and %.2f degrees\n", millimetres, degrees
-    exit !(millimetres <= 10 && degrees <= 2)
-  }' "$out/square.csv" || fail "the square did not close within 10 mm and 2 degrees"
+closes=yes
+said=$(scripts/closing-error.sh "$out/square.csv") || closes=no
+say "$said"
+[ "$closes" = yes ] || fail "the square did not close within 10 mm and 2 degrees"
 say "picture: $out/square.png, record: $out/square.csv"

@@ -69,21 +69,10 @@ done
 run() { "${emulator[@]}" -E LD_LIBRARY_PATH="$lib:$out/library/lib" "$@"; }
 KENAF_RELAY="127.0.0.1:$(cat "$out/port")" KENAF_RECORD="$out/square.csv" run "$out/library/bin/square_sim" ||
   fail "the square failed"
-# The error by the simulator's ground truth: first against last row that has a pose.
-awk -F, '
-  NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
-  $column["x_m"] != "" {
-    x = $column["x_m"]; y = $column["y_m"]; yaw = $column["yaw_rad"]
-    if (!seen++) { x0 = x; y0 = y; yaw0 = yaw }
-  }
-  END {
-    if (!seen) { print "try-aarch64: the record holds no pose"; exit 1 }
-    millimetres = 1000 * sqrt((x - x0) ^ 2 + (y - y0) ^ 2)
-    degrees = atan2(sin(yaw - yaw0), cos(yaw - yaw0)) * 180 / atan2(0, -1)
-    if (degrees < 0) degrees = -degrees
-    printf "try-aarch64: the square closed within %.1f mm and %.2f degrees\n", millimetres, degrees
-    exit !(millimetres <= 10 && degrees <= 2)
-  }' "$out/square.csv" || fail "the square did not close within 10 mm and 2 degrees"
+closes=yes
+said=$(scripts/closing-error.sh "$out/square.csv") || closes=no
+echo "try-aarch64: $said"
+[ "$closes" = yes ] || fail "the square did not close within 10 mm and 2 degrees"
 status=0
 output=$(KENAF_CAN_INTERFACE=nocan7 KENAF_ROBOT="$PWD/share/robots/kenaf.toml" run "$out/library/bin/square_real" 2>&1) || status=$?
 [ "$status" = 1 ] && grep -qi can <<<"$output" || fail "square_real ended with $status: $output"
