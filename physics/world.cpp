@@ -139,11 +139,7 @@ struct World::Implementation {
     const RobotTruth& truth = entry.last_whole;
     entry.currents = {};
     if (!entry.fault.empty()) return entry.sensors->record(truth, now_s, {}, {}, {});
-    if (entry.sensors->has_touch()) {
-      const Pose X_BW = inverse(truth.X_WB);
-      where.touches(id, touches);
-      for (Eigen::Vector3d& p : touches) p = X_BW.p + X_BW.q * p;
-    }
+    if (entry.sensors->has_touch()) where.touches(id, touches);
     entry.currents = {{model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
                       {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
                        model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};

@@ -1,5 +1,6 @@
 #include "physics/sensors/sensor_set.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -59,7 +60,7 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
 
 void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
                        const std::array<double, robot::kFlipperCount>& flipper_a,
-                       std::span<const Eigen::Vector3d> touches_B) {
+                       std::span<const Eigen::Vector3d> touches_W) {
   // Effects of the encoders act before everything that is derived from them.
   std::array<double, robot::kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
@@ -82,11 +83,14 @@ void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<dou
                       .battery_v = truth.battery_v,
                       .odometry = odometry_};
 
-  // Bit i is set if touch sensor i is within kTouchRadius_m of a contact.
+  // Bit i is set if touch sensor i is within kTouchRadius_m of a contact. In W: there are fewer mounts than contacts.
   for (std::size_t i = 0; has_touch_ && i < entries_.size(); ++i) {
     if (robot_.sensors[i].type != SensorType::touch) continue;
-    for (const Eigen::Vector3d& p_BC : touches_B)
-      if ((p_BC - robot_.sensors[i].X_BS.p).norm() < kTouchRadius_m) sample.touched |= std::uint64_t{1} << i;
+    const Eigen::Vector3d p_WS = truth.X_WB.p + truth.X_WB.q * robot_.sensors[i].X_BS.p;
+    const bool touched = std::ranges::any_of(touches_W, [&p_WS](const Eigen::Vector3d& p_WC) {
+      return (p_WC - p_WS).squaredNorm() < kTouchRadius_m * kTouchRadius_m;
+    });
+    if (touched) sample.touched |= std::uint64_t{1} << i;
   }
   history_.push(sample);
 }

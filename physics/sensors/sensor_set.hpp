@@ -19,9 +19,9 @@ class SensorSet {
   SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed, double time_step_s,
             const Eigen::Vector3d& gravity_W_mps2);
 
-  // Call once after placement and after each step. `touches_B`: where the robot is touched, in B.
+  // Call once after placement and after each step. `touches_W`: where the robot is touched, in W.
   void record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
-              const std::array<double, robot::kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B);
+              const std::array<double, robot::kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_W);
   // Call after a teleport: the jump is no motion.
   void forget_motion() { history_.clear(); }
 
