@@ -25,6 +25,15 @@
 namespace kenaf::physics {
 namespace {
 
+// Expat 2.9 counts lines in 64 bits, and calls the function that it had before obsolete.
+std::uint64_t line_of(XML_Parser parser) {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+  return XML_GetCurrentLineNumber64(parser);
+#else
+  return XML_GetCurrentLineNumber(parser);
+#endif
+}
+
 std::string extension_of(MeshFormat format) {
   return format == MeshFormat::stl ? "stl" : format == MeshFormat::obj ? "obj" : "dae";
 }
@@ -134,7 +143,7 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
     if (source.starts_with('#')) source.remove_prefix(1);
     // A stride of 0 still spans one value.
     const std::uint64_t reach = offset + std::max<std::uint64_t>(stride, 1) * count_in(check, count, 0);
-    check.accessors.push_back({std::string(source), reach, stride, XML_GetCurrentLineNumber(check.parser)});
+    check.accessors.push_back({std::string(source), reach, stride, line_of(check.parser)});
     check.in_accessor = true;
     check.parameters = 0;
   } else if (name == "param" && check.in_accessor && ++check.parameters > check.accessors.back().stride) {
@@ -190,10 +199,10 @@ void check_collada(std::string_view bytes) {
   }
   if (check.refusal)
     throw description::DescriptionError(
-        fmt::format("{} (line {})", check.refusal, XML_GetCurrentLineNumber(parser.get())));
+        fmt::format("{} (line {})", check.refusal, line_of(parser.get())));
   throw description::DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
                                                   XML_ErrorString(XML_GetErrorCode(parser.get())),
-                                                  XML_GetCurrentLineNumber(parser.get())));
+                                                  line_of(parser.get())));
 }
 
 // Assimp's ear clipping takes quadratic time or more in the corners of a polygon.

@@ -1,4 +1,4 @@
-// Description of a world: ground, boxes and start poses, read from an SDF file in share/worlds/ by libsdformat.
+// Description of a world: ground, boxes and start poses, read from an SDF file (http://sdformat.org).
 // World frame W: z up, x and y as in the file. SI units. Thread safety: a value.
 #pragma once
 

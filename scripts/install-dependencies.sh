@@ -13,7 +13,7 @@ library=(cmake g++ make libfmt-dev libtomlplusplus-dev libturbojpeg0-dev)
 packages=(
   "${library[@]}" ninja-build pkg-config
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libbz2-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
-  libjs-three liblz4-dev libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libsqlite3-dev libtinyxml2-dev
+  libjs-three liblz4-dev libncurses-dev libpng-dev libspdlog-dev libsqlite3-dev libtinyxml2-dev
   liburdfdom-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
   # the Python package
   pybind11-dev python3-dev python3-numpy

@@ -6,7 +6,7 @@
 #   library   the two libraries without the simulator: on a machine with g++, cmake and what they need alone; then with their
 #             tools, tests and packages, which go to build/debian/RELEASE; then, on trixie, those packages that bookworm
 #             made, if they are there
-#   whole     the same, and everything else with its tests (about an hour); bookworm alone, for Debian 13 has no libsdformat
+#   whole     the same, and everything else with its tests (about an hour)
 #
 # Needs root, or sudo, and debootstrap; 1 GB of disk for the libraries, 6 GB for the whole, below CHROOTS
 # (/var/tmp/kenaf-chroots). The folder is removed at the end, unless CHROOTS is set. DEBIAN_MIRROR: of Debian's
@@ -15,10 +15,6 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 release=${1:-} part=${2:-library}
 case $release in bookworm | trixie) ;; *) echo "try-debian: '$release' is neither 'bookworm' nor 'trixie'" >&2; exit 2 ;; esac
-if [ "$release $part" = "trixie whole" ]; then
-  echo "try-debian: the simulator reads worlds by libsdformat, which Debian 13 does not have: only 'library' is built there" >&2
-  exit 2
-fi
 case $part in library | whole) ;; *) echo "try-debian: '$part' is neither 'library' nor 'whole'" >&2; exit 2 ;; esac
 command -v debootstrap >/dev/null || { echo "try-debian: install debootstrap" >&2; exit 2; }
 as_root=()

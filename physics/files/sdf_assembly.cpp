@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
 #include <system_error>
-#include <unordered_map>
+#include <utility>
 
 #include "formats/description/description_error.hpp"
+#include "physics/files/sdf_values.hpp"
 
 namespace kenaf::physics {
 namespace {
@@ -15,148 +15,110 @@ namespace {
 namespace fs = std::filesystem;
 using description::DescriptionError;
 
-[[noreturn]] void refuse(const SdfPart& part, const std::string& what) {
-  throw DescriptionError(fmt::format("{}: {}", place_of(part.file, part.line), what));
-}
-
-void insert(const sdf::ElementPtr& child, const sdf::ElementPtr& parent) {
-  child->SetParent(parent);
-  parent->InsertElement(child);
-}
-
-std::string attribute_of(const sdf::ElementPtr& element, const char* name) {
-  const sdf::ParamPtr value = element ? element->GetAttribute(name) : nullptr;
-  return value ? value->GetAsString() : "";
-}
-
-// In whose frame an element of a world or model is placed, of those in the same one: "a" of "a::b".
-std::string placed_in(const sdf::ElementPtr& element) {
-  const std::string relative_to = attribute_of(element->FindElement("pose"), "relative_to");
-  const std::string in = relative_to.empty() ? attribute_of(element, "attached_to") : relative_to;
-  return in.substr(0, in.find("::"));
-}
-
-// Throws if poses are relative to one another in too long a chain or in a circle.
-void check_chains(const sdf::ElementPtr& world_or_model) {
-  std::unordered_map<std::string, std::string> placed;
-  for (sdf::ElementPtr each = world_or_model->GetFirstElement(); each; each = each->GetNextElement())
-    if (each->GetAttribute("name")) placed.emplace(attribute_of(each, "name"), placed_in(each));
-  for (const auto& [name, first] : placed) {
-    const std::string* next = &first;
-    for (int length = 0; !next->empty(); ++length) {
-      const auto found = placed.find(*next);
-      if (found == placed.end()) break;
-      if (length == SdfAssembly::kLongestChain)
-        fail_at(world_or_model, fmt::format("a pose is relative to a chain of more than {} others, or to itself",
-                                            SdfAssembly::kLongestChain));
-      next = &found->second;
-    }
-  }
-}
-
-// Puts what an <include> says in place of what the model says.
-void override_with(const sdf::ElementPtr& said, const sdf::ElementPtr& model) {
-  for (const char* attribute : {"name", "placement_frame"})
-    if (const sdf::ParamPtr value = said->GetAttribute(attribute); !value->GetAsString().empty())
-      *model->GetAttribute(attribute) = *value;
+// Puts what an <include> says in place of what the model says. The model, not what is in it, stands there for errors.
+void override_with(const SdfElement& include, SdfElement& model) {
+  model.file = include.file;
+  model.line = include.line;
+  for (const char* name : {"name", "placement_frame"})
+    if (const std::string said = text_in(include, name); !said.empty()) set_attribute(model, name, said);
   for (const char* name : {"static", "pose"}) {
-    const sdf::ElementPtr given = said->FindElement(name);
-    if (!given) continue;
-    if (const sdf::ElementPtr own = model->FindElement(name)) model->RemoveChild(own);
-    insert(given, model);
+    const SdfElement* said = child_of(include, name);
+    if (!said) continue;
+    std::erase_if(model.children, [name](const SdfElement& child) { return child.name == name; });
+    model.children.push_back(*said);
   }
 }
 
 }  // namespace
 
-void SdfAssembly::count(const SdfPart& part) {
-  const auto one_more = [&part](std::size_t& count, std::size_t most, const char* what) {
-    if (++count > most) refuse(part, fmt::format("the world has more than {} {}", most, what));
+void SdfAssembly::count(const SdfElement& element) {
+  const auto one_more = [&element](std::size_t& count, std::size_t most, const char* what) {
+    if (++count > most) fail_at(element, fmt::format("the world has more than {} {}", most, what));
   };
-  if (part.kind == "model") one_more(models_, kMostModels, "models");
-  if (part.kind == "link") one_more(links_, kMostLinks, "links");
-  if (part.kind == "collision") one_more(shapes_, kMostShapes, "shapes");
-  if (part.kind == "frame") one_more(frames_, kMostFrames, "frames");
+  if (element.name == "model") one_more(models_, kMostModels, "models");
+  if (element.name == "link") one_more(links_, kMostLinks, "links");
+  if (element.name == "collision") one_more(shapes_, kMostShapes, "shapes");
+  if (element.name == "frame" || element.name == "joint") one_more(frames_, kMostFrames, "frames and joints");
 }
 
-const std::optional<SdfPart>& SdfAssembly::outline_of(const fs::path& file) {
-  const auto known = outlines_.find(file);
-  if (known != outlines_.end()) return known->second;
-  return outlines_[file] = outline_model(files_.read(file), file.string(), notes_);
+const std::optional<SdfElement>& SdfAssembly::model_of(const fs::path& file) {
+  const auto known = models_by_file_.find(file);
+  if (known != models_by_file_.end()) return known->second;
+  return models_by_file_[file] = sdf_model(files_.read(file), file.string(), notes_);
 }
 
-sdf::ElementPtr SdfAssembly::element_of(const SdfPart& part, int depth) {
-  if (depth > kMostNestedModels) refuse(part, fmt::format("models are nested more than {} deep", kMostNestedModels));
-  count(part);
-  sdf::ElementPtr element = read_part(part);
-  for (const SdfPart& inner : part.parts) {
-    const int inner_depth = depth + (inner.kind == "model" ? 1 : 0);
-    if (const sdf::ElementPtr made =
-            inner.include_uri.empty() ? element_of(inner, inner_depth) : included(inner, inner_depth))
-      insert(made, element);
+// `depth` counts the models around the children of `parent`, itself among them.
+void SdfAssembly::put_includes(SdfElement& parent, int depth) {
+  count(parent);
+  std::vector<SdfElement> children;
+  children.reserve(parent.children.size());
+  for (SdfElement& child : parent.children) {
+    const bool is_model = child.name == "model" || child.name == "include";
+    if (is_model && depth + 1 > kMostNestedModels)
+      fail_at(child, fmt::format("models are nested more than {} deep", kMostNestedModels));
+    if (child.name == "include") {
+      if (std::optional<SdfElement> model = included(child, depth + 1)) children.push_back(std::move(*model));
+      continue;
+    }
+    if (is_model || child.name == "link" || child.name == "collision" || child.name == "frame" || child.name == "joint")
+      put_includes(child, depth + (is_model ? 1 : 0));
+    children.push_back(std::move(child));
   }
-
-  check_chains(element);
-
-  // SDF allows no moving model without a link; it has no effect.
-  if (element->GetName() == "model" && !element->HasElement("link") && !element->HasElement("model")) {
-    if (const sdf::ElementPtr said = element->FindElement("static")) element->RemoveChild(said);
-    const sdf::ElementPtr is_static(new sdf::Element);
-    is_static->SetName("static");
-    is_static->AddValue("bool", "true", false);
-    insert(is_static, element);
-  }
-  return element;
+  parent.children = std::move(children);
+  check_sibling_names(parent);
 }
 
-std::optional<fs::path> SdfAssembly::file_of(const SdfPart& include) {
-  if (!WorldFiles::is_local(include.include_uri) || !files_.has_folders()) return std::nullopt;
+std::optional<fs::path> SdfAssembly::file_of(const SdfElement& include) {
+  const std::string uri = text_in(include, "uri");
+  if (!WorldFiles::is_local(uri) || !files_.has_folders()) return std::nullopt;
   try {
-    return files_.find_model(include.include_uri, include.file);
+    return files_.find_model(uri, *include.file);
   } catch (const DescriptionError& error) {
-    refuse(include, error.what());
+    fail_at(include, error.what());
   }
 }
 
-sdf::ElementPtr SdfAssembly::included(const SdfPart& include, int depth) {
+std::optional<SdfElement> SdfAssembly::included(const SdfElement& include, int depth) {
   // A file, none of those that are open.
   const std::optional<fs::path> file = file_of(include);
   if (!file) {
-    notes_.add(place_of(include.file, include.line),
+    notes_.add(place_of(include),
                fmt::format("<include> of \"{}\" is left out: it is in no folder of this world ({}); KENAF_WORLD_PATH "
                            "names more",
-                           include.include_uri, files_.folders_in_words()));
-    return nullptr;
+                           text_in(include, "uri"), files_.folders_in_words()));
+    return std::nullopt;
   }
   if (const auto first = std::ranges::find(chain_, *file); first != chain_.end()) {
     std::string chain;
     for (auto each = first; each != chain_.end(); ++each) chain += each->string() + " includes ";
-    refuse(include, fmt::format("a file includes itself: {}{}", chain, file->string()));
+    fail_at(include, fmt::format("a file includes itself: {}{}", chain, file->string()));
   }
 
   // Its model, with what the <include> says.
-  const std::optional<SdfPart>* outline = nullptr;
+  std::optional<SdfElement> model;
   try {
-    outline = &outline_of(*file);
+    model = model_of(*file);
   } catch (const DescriptionError& error) {
-    refuse(include, fmt::format("<include>: {}", error.what()));
+    fail_at(include, fmt::format("<include>: {}", error.what()));
   }
-  if (!*outline) {
-    notes_.add(place_of(include.file, include.line),
-               fmt::format("<include> of \"{}\" is left out: it holds no <model>", include.include_uri));
-    return nullptr;
+  if (!model) {
+    notes_.add(place_of(include),
+               fmt::format("<include> of \"{}\" is left out: it holds no <model>", text_in(include, "uri")));
+    return std::nullopt;
   }
   chain_.push_back(*file);
-  sdf::ElementPtr model = element_of(**outline, depth);
+  put_includes(*model, depth);
   chain_.pop_back();
-  override_with(read_part(include), model);
+  override_with(include, *model);
+  check_name(*model);
   return model;
 }
 
-sdf::ElementPtr SdfAssembly::assemble(const SdfPart& world) {
+SdfElement SdfAssembly::assemble(SdfElement world) {
   std::error_code not_a_file;
-  chain_.assign(1, fs::weakly_canonical(world.file, not_a_file));
-  return element_of(world, 0);
+  chain_.assign(1, fs::weakly_canonical(*world.file, not_a_file));
+  put_includes(world, 0);
+  return world;
 }
 
 }  // namespace kenaf::physics

@@ -7,14 +7,10 @@
 #include <cctype>
 #include <initializer_list>
 #include <optional>
-#include <sdf/Capsule.hh>
-#include <sdf/Cylinder.hh>
-#include <sdf/Ellipsoid.hh>
-#include <sdf/Heightmap.hh>
-#include <sdf/Mesh.hh>
-#include <sdf/Sphere.hh>
 
 #include "formats/description/description_error.hpp"
+#include "physics/files/sdf_frames.hpp"
+#include "physics/files/sdf_values.hpp"
 #include "physics/height_map.hpp"
 #include "physics/mesh_file.hpp"
 #include "physics/surface_shapes.hpp"
@@ -22,29 +18,46 @@
 namespace kenaf::physics {
 namespace {
 
-Eigen::Vector3d from_sdf(const ignition::math::Vector3d& v) {
-  return {v.X(), v.Y(), v.Z()};
-}
+constexpr double kMaxSize_m = SdfFrames::kMaxCoordinate_m;
 
-// Throws DescriptionError unless all sizes are positive and not too large. read_surface() adds the place to errors of
-// this and of the functions below.
-void check_sizes(const sdf::ElementPtr& element, std::initializer_list<double> sizes) {
+void check_sizes(const SdfElement& shape, std::initializer_list<double> sizes) {
   for (const double size : sizes)
-    if (!(size > 0 && size <= kMaxCoordinate_m))
-      throw description::DescriptionError(fmt::format("the sizes of a <{}> must be more than 0 and at most {} m",
-                                                      element->GetName(), kMaxCoordinate_m));
+    if (!(size > 0 && size <= kMaxSize_m))
+      fail_at(shape, fmt::format("the sizes of a <{}> must be more than 0 and at most {} m", shape.name, kMaxSize_m));
 }
 
-TriangleSurface read_polyline(const sdf::ElementPtr& element) {
-  std::vector<Eigen::Vector2d> corners;
-  for (sdf::ElementPtr point = element->FindElement("point"); point; point = point->GetNextElement("point")) {
-    const auto p = point->Get<ignition::math::Vector2d>();
-    corners.emplace_back(p.X(), p.Y());
-    if (!corners.back().allFinite() || corners.back().norm() > kMaxCoordinate_m)
-      throw description::DescriptionError(
-          fmt::format("a <point> is not a number or further than {} m away", kMaxCoordinate_m));
+// Errors of files and surfaces get the place of the shape.
+template <typename Read>
+auto at_place_of(const SdfElement& shape, const Read& read) {
+  try {
+    return read();
+  } catch (const description::DescriptionError& error) {
+    fail_at(shape, error.what());
   }
-  return prism_surface(std::move(corners), element->Get<double>("height"));
+}
+
+// Calls read(bytes) for a file that is found as `uri`; its errors get that name.
+template <typename Read>
+auto read_named_file(ShapeFiles& files, const std::filesystem::path& file, const std::string& uri, const Read& read) {
+  const std::string bytes = files.files.read(file);
+  try {
+    return read(bytes);
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", uri, error.what()));
+  }
+}
+
+TriangleSurface read_polyline(const SdfElement& polyline) {
+  const double height_m = number_in(polyline, "height", 1);
+  check_sizes(polyline, {height_m});
+  std::vector<Eigen::Vector2d> corners;
+  for (const SdfElement& point : polyline.children) {
+    if (point.name != "point") continue;
+    corners.push_back(vector2_of(point));
+    if (!corners.back().allFinite() || corners.back().norm() > kMaxSize_m)
+      fail_at(point, fmt::format("a <point> is not a number or further than {} m away", kMaxSize_m));
+  }
+  return at_place_of(polyline, [&] { return prism_surface(std::move(corners), height_m); });
 }
 
 std::optional<MeshFormat> format_of(const std::string& uri) {
@@ -57,38 +70,35 @@ std::optional<MeshFormat> format_of(const std::string& uri) {
   return std::nullopt;
 }
 
-// The errors of the file get its name.
-template <typename Read>
-auto named(const std::string& uri, const Read& read) {
-  try {
-    return read();
-  } catch (const description::DescriptionError& error) {
-    throw description::DescriptionError(fmt::format("\"{}\" {}", uri, error.what()));
-  }
+std::string uri_of(const SdfElement& shape) {
+  const std::string uri = text_in(shape, "uri");
+  if (uri.empty()) fail_at(shape, fmt::format("a <{}> needs a <uri>", shape.name));
+  return uri;
 }
 
-const MeshContent& content_of(const sdf::Mesh& mesh, MeshFormat format, ShapeFiles& files, std::size_t most_triangles) {
-  const MeshPart part{mesh.Submesh(), mesh.CenterSubmesh()};
-  const std::filesystem::path file = files.files.find(mesh.Uri(), mesh.Element()->FilePath());
-  const std::tuple key(file, part.submesh, part.centred);
-  const auto known = files.meshes.find(key);
-  if (known != files.meshes.end()) return known->second;
-  const std::string bytes = files.files.read(file);
-  return files.meshes[key] = named(mesh.Uri(), [&] { return read_mesh(bytes, format, part, most_triangles); });
+const MeshContent& content_of(const SdfElement& mesh, const std::string& uri, MeshFormat format, ShapeFiles& files,
+                              std::size_t most_triangles) {
+  const SdfElement* submesh = child_of(mesh, "submesh");
+  const MeshPart part{submesh ? text_in(*submesh, "name") : "", submesh && truth_in(*submesh, "center", false)};
+  return *at_place_of(mesh, [&] {
+    const std::filesystem::path file = files.files.find(uri, *mesh.file);
+    const std::tuple key(file, part.submesh, part.centred);
+    if (const auto known = files.meshes.find(key); known != files.meshes.end()) return &known->second;
+    const auto read = [&](const std::string& bytes) { return read_mesh(bytes, format, part, most_triangles); };
+    return &files.meshes.emplace(key, read_named_file(files, file, uri, read)).first->second;
+  });
 }
 
-TriangleSurface read_mesh_element(SdfNotes& notes, const sdf::Mesh& mesh, ShapeFiles& files,
+TriangleSurface read_mesh_element(SdfNotes& notes, const SdfElement& mesh, ShapeFiles& files,
                                   std::size_t most_triangles) {
-  const std::optional<MeshFormat> format = format_of(mesh.Uri());
-  if (!format)
-    throw description::DescriptionError(fmt::format("\"{}\": a mesh must be a .stl, .obj or .dae file", mesh.Uri()));
-  const Eigen::Vector3d scale = from_sdf(mesh.Scale());
-  if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0))
-    throw description::DescriptionError("<scale> must not be zero");
-  const MeshContent& content = content_of(mesh, *format, files, most_triangles);
+  const std::string uri = uri_of(mesh);
+  const std::optional<MeshFormat> format = format_of(uri);
+  if (!format) fail_at(mesh, fmt::format("\"{}\": a mesh must be a .stl, .obj or .dae file", uri));
+  const Eigen::Vector3d scale = vector3_in(mesh, "scale", {1, 1, 1});
+  if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0)) fail_at(mesh, "<scale> must not be zero");
+  const MeshContent& content = content_of(mesh, uri, *format, files, most_triangles);
   if (content.other_faces > 0)
-    notes.add(place_of(mesh.Element()),
-              fmt::format("\"{}\": {} points and lines are not simulated", mesh.Uri(), content.other_faces));
+    notes.add(place_of(mesh), fmt::format("\"{}\": {} points and lines are not simulated", uri, content.other_faces));
 
   // A scale that mirrors turns the triangles inside out.
   TriangleSurface surface = content.surface;
@@ -98,87 +108,63 @@ TriangleSurface read_mesh_element(SdfNotes& notes, const sdf::Mesh& mesh, ShapeF
   return surface;
 }
 
-TriangleSurface read_height_map_element(const sdf::Heightmap& map, ShapeFiles& files) {
-  const Eigen::Vector3d size = from_sdf(map.Size()), position = from_sdf(map.Position());
-  check_sizes(map.Element(), {size.x(), size.y(), size.z()});
-  if (!position.allFinite()) throw description::DescriptionError("<pos> must be numbers");
-  const std::filesystem::path file = files.files.find(map.Uri(), map.Element()->FilePath());
-  const auto [picture, is_new] = files.pictures.try_emplace(file);
-  if (is_new) {
-    const std::string bytes = files.files.read(file);
-    picture->second = named(map.Uri(), [&] { return read_grey_png(bytes); });
-  }
-  return height_map_surface(picture->second, size, position);
+TriangleSurface read_height_map_element(const SdfElement& map, ShapeFiles& files) {
+  const Eigen::Vector3d size = vector3_in(map, "size", {1, 1, 1}), position = vector3_in(map, "pos", {0, 0, 0});
+  check_sizes(map, {size.x(), size.y(), size.z()});
+  if (!position.allFinite()) fail_at(map, "<pos> must be numbers");
+  const std::string uri = uri_of(map);
+  return at_place_of(map, [&] {
+    const std::filesystem::path file = files.files.find(uri, *map.file);
+    auto known = files.pictures.find(file);
+    if (known == files.pictures.end())
+      known = files.pictures.emplace(file, read_named_file(files, file, uri, read_grey_png)).first;
+    return height_map_surface(known->second, size, position);
+  });
 }
 
-// `element` becomes that of the shape, for errors.
-TriangleSurface read_shape(SdfNotes& notes, const sdf::Geometry& geometry, ShapeFiles& files,
-                           std::size_t most_triangles, sdf::ElementPtr& element) {
-  // One branch for each shape; sizes are checked first.
-  if (const sdf::Cylinder* cylinder = geometry.CylinderShape()) {
-    element = cylinder->Element();
-    check_sizes(element, {cylinder->Radius(), cylinder->Length()});
-    return cylinder_surface(cylinder->Radius(), cylinder->Length());
-  }
-  if (const sdf::Sphere* sphere = geometry.SphereShape()) {
-    element = sphere->Element();
-    check_sizes(element, {sphere->Radius()});
-    return sphere_surface(sphere->Radius());
-  }
-  if (const sdf::Capsule* capsule = geometry.CapsuleShape()) {
-    element = capsule->Element();
-    check_sizes(element, {capsule->Radius(), capsule->Length()});
-    return capsule_surface(capsule->Radius(), capsule->Length());
-  }
-  if (const sdf::Ellipsoid* ellipsoid = geometry.EllipsoidShape()) {
-    element = ellipsoid->Element();
-    const Eigen::Vector3d radii = from_sdf(ellipsoid->Radii());
-    check_sizes(element, {radii.x(), radii.y(), radii.z()});
-    return ellipsoid_surface(radii);
-  }
-  if (const sdf::Mesh* mesh = geometry.MeshShape()) {
-    element = mesh->Element();
-    return read_mesh_element(notes, *mesh, files, most_triangles);
-  }
-  if (const sdf::Heightmap* map = geometry.HeightmapShape()) {
-    element = map->Element();
-    return read_height_map_element(*map, files);
-  }
-  if (geometry.Element()->HasElement("polyline")) {
-    element = geometry.Element()->GetElement("polyline");
-    check_sizes(element, {element->Get<double>("height")});
-    return read_polyline(element);
-  }
-  return {};
+TriangleSurface read_ellipsoid(const SdfElement& ellipsoid) {
+  const Eigen::Vector3d radii = vector3_in(ellipsoid, "radii", {1, 1, 1});
+  check_sizes(ellipsoid, {radii.x(), radii.y(), radii.z()});
+  return ellipsoid_surface(radii);
+}
+
+// A shape of one radius, and of a length if it has one. Returns make(radius, length).
+template <typename Make>
+TriangleSurface read_round(const SdfElement& shape, double default_radius_m, const Make& make) {
+  const double radius_m = number_in(shape, "radius", default_radius_m), length_m = number_in(shape, "length", 1);
+  check_sizes(shape, {radius_m, length_m});
+  return make(radius_m, length_m);
+}
+
+TriangleSurface read_shape(SdfNotes& notes, const SdfElement& shape, ShapeFiles& files, std::size_t most_triangles) {
+  if (shape.name == "cylinder") return read_round(shape, 1, cylinder_surface);
+  if (shape.name == "capsule") return read_round(shape, 0.5, capsule_surface);
+  if (shape.name == "sphere")
+    return read_round(shape, 1, [](double radius_m, double) { return sphere_surface(radius_m); });
+  if (shape.name == "ellipsoid") return read_ellipsoid(shape);
+  if (shape.name == "mesh") return read_mesh_element(notes, shape, files, most_triangles);
+  if (shape.name == "heightmap") return read_height_map_element(shape, files);
+  return read_polyline(shape);
 }
 
 }  // namespace
 
-TriangleSurface read_surface(SdfNotes& notes, const sdf::Geometry& geometry, ShapeFiles& files,
-                             std::size_t most_triangles) {
-  sdf::ElementPtr element = geometry.Element();
-  TriangleSurface surface;
-  try {
-    surface = read_shape(notes, geometry, files, most_triangles, element);
-  } catch (const description::DescriptionError& error) {
-    fail_at(element, error.what());
-  }
+TriangleSurface read_surface(SdfNotes& notes, const SdfElement& shape, ShapeFiles& files, std::size_t most_triangles) {
+  TriangleSurface surface = read_shape(notes, shape, files, most_triangles);
 
   // Limits, then tidying; what is left out or doubtful is noted.
-  if (surface.triangles.empty()) return surface;
   if (surface.triangles.size() > most_triangles)
-    fail_at(element, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,
-                                 element->GetName()));
+    fail_at(shape, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,
+                               shape.name));
   for (const Eigen::Vector3d& p : surface.vertices)
-    if (!(p.norm() <= kMaxCoordinate_m))
-      fail_at(element, fmt::format("a vertex is further than {} m away", kMaxCoordinate_m));
+    if (!(p.norm() <= kMaxSize_m)) fail_at(shape, fmt::format("a vertex is further than {} m away", kMaxSize_m));
   const TidySurface tidied = tidy(surface);
   if (tidied.dropped > 0)
-    notes.add(place_of(element), fmt::format("{} triangles without area are left out", tidied.dropped));
+    notes.add(place_of(shape), fmt::format("{} triangles without area are left out", tidied.dropped));
   if (!tidied.windings_agree)
-    notes.add(place_of(element),
+    notes.add(place_of(shape),
               "neighbouring triangles do not agree on which side of them is out; robots may fall through");
-  if (surface.triangles.empty()) fail_at(element, "no triangle has an area");
+  if (surface.triangles.empty()) fail_at(shape, "no triangle has an area");
   return surface;
 }
 

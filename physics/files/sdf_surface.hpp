@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <map>
-#include <sdf/Geometry.hh>
 #include <string>
 #include <tuple>
 
+#include "physics/files/sdf_element.hpp"
 #include "physics/files/sdf_notes.hpp"
 #include "physics/files/world_files.hpp"
 #include "physics/height_map.hpp"
@@ -23,10 +23,9 @@ struct ShapeFiles {
 };
 
 // The surface of a <cylinder>, <sphere>, <capsule>, <ellipsoid>, <polyline>, <mesh> or <heightmap>, in the collision's
-// frame, tidied; without triangles if the geometry is none of these. Parts that are left out are noted.
+// frame, tidied. Parts that are left out are noted.
 // Throws DescriptionError with file and line if a size is invalid, a file is missing or malformed, or the surface has
 // more than `most_triangles`.
-TriangleSurface read_surface(SdfNotes& notes, const sdf::Geometry& geometry, ShapeFiles& files,
-                             std::size_t most_triangles);
+TriangleSurface read_surface(SdfNotes& notes, const SdfElement& shape, ShapeFiles& files, std::size_t most_triangles);
 
 }  // namespace kenaf::physics

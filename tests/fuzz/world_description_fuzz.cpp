@@ -6,7 +6,7 @@
 #include "physics/world_description.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // libsdformat takes milliseconds for a document; long ones would only be slow
+  // long ones would only be slow
   if (size > 8192) return 0;
   std::vector<std::string> unsupported;
   try {

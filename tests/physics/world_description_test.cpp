@@ -249,3 +249,79 @@ TEST_CASE("What cannot be a world is refused with its place") {
   std::vector<std::string> unsupported;
   CHECK_THROWS_AS(load_world("no-such-world", unsupported), kenaf::description::DescriptionError);
 }
+
+// The model is at (1, 0, 0), its link 2 further along x; the frame 5 above the model's origin. So the box in the frame
+// is at (1, 0, 5) in the world, whatever its link's place.
+TEST_CASE("A collision may be placed in a frame of its model") {
+  std::vector<std::string> unsupported;
+  const auto world = parse_world(
+      sdf("<model name=\"m\"><static>1</static><pose>1 0 0 0 0 0</pose><frame name=\"f\"><pose>0 0 5 0 0 0</pose>"
+          "</frame><link name=\"l\"><pose>2 0 0 0 0 1.5</pose><collision name=\"c\"><pose relative_to=\"f\"/>"
+          "<geometry><box><size>1 1 1</size></box></geometry></collision></link></model>"),
+      "t", "", unsupported);
+  REQUIRE(world.boxes.size() == 1);
+  CHECK((world.boxes[0].X_WBox.p - Eigen::Vector3d(1, 0, 5)).norm() < 1e-9);
+}
+
+// The part is turned by 90 degrees and stands at (0, 3, 0); "part::l" is 1 along the part's x, which points along y.
+TEST_CASE("A pose may be given in a frame of a model within a model") {
+  const std::string part =
+      "<model name=\"part\"><static>1</static><pose>0 3 0 0 0 1.5707963267948966</pose>"
+      "<link name=\"l\"><pose>1 0 0 0 0 0</pose></link></model>";
+  std::vector<std::string> unsupported;
+  const auto at = [&](const std::string& name) {
+    return parse_world(
+               sdf(part + "<frame name=\"start\"><pose relative_to=\"" + name + "\">0 0 1 0 0 0</pose></frame>"), "t",
+               "", unsupported)
+        .start_poses.at(0)
+        .X_WB.p;
+  };
+  CHECK((at("part::l") - Eigen::Vector3d(0, 4, 1)).norm() < 1e-9);
+  CHECK((at("part::__model__") - Eigen::Vector3d(0, 3, 1)).norm() < 1e-9);
+  CHECK((at("world") - Eigen::Vector3d(0, 0, 1)).norm() < 1e-9);
+  CHECK_THROWS_AS(at("part::gone"), kenaf::description::DescriptionError);
+  CHECK_THROWS_AS(at("part::l::gone"), kenaf::description::DescriptionError);
+  CHECK_THROWS_AS(at("__model__"), kenaf::description::DescriptionError);
+}
+
+TEST_CASE("A rotation is given as angles, in degrees, or as a quaternion") {
+  const auto yaw_of = [](const std::string& pose) {
+    std::vector<std::string> unsupported;
+    const auto world = parse_world(sdf("<frame name=\"start\">" + pose + "</frame>"), "t", "", unsupported);
+    return roll_pitch_yaw(world.start_poses.at(0).X_WB.q).z();
+  };
+  CHECK(yaw_of("<pose>0 0 0 0 0 0.5</pose>") == Approx(0.5));
+  CHECK(yaw_of("<pose degrees=\"true\">0 0 0 0 0 90</pose>") == Approx(1.5707963267948966));
+  CHECK(yaw_of("<pose rotation_format=\"quat_xyzw\">0 0 0 0 0 1 1</pose>") == Approx(1.5707963267948966));
+  CHECK(yaw_of("<pose>\n  0 0\t0 0 0 +5e-1 </pose>") == Approx(0.5));
+  for (const char* pose : {"<pose>0 0 0 0 0</pose>", "<pose>0 0 0 0 0 0 1</pose>", "<pose>0 0 0 0 0 a</pose>",
+                           "<pose>0 0 0 0 0 nan</pose>", "<pose rotation_format=\"quat_xyzw\">0 0 0 0 0 0 0</pose>",
+                           "<pose rotation_format=\"matrix\">0 0 0 0 0 0</pose>",
+                           "<pose degrees=\"often\">0 0 0 0 0 0</pose>", "<pose>0 0 1e6 0 0 0</pose>"}) {
+    INFO(pose);
+    CHECK(error_of(sdf("<frame name=\"start\">" + std::string(pose) + "</frame>")).find("test.sdf:3: ") == 0);
+  }
+}
+
+// As libsdformat renames it; the model keeps the name for itself.
+TEST_CASE("A frame that has a model's name is renamed, and said so") {
+  std::vector<std::string> unsupported;
+  const auto world = parse_world(
+      sdf("<model name=\"a\"><pose>1 0 0 0 0 0</pose></model><frame name=\"a\"><pose>0 2 0 0 0 0</pose></frame>"
+          "<frame name=\"start_1\"><pose relative_to=\"a\"/></frame><frame name=\"start_2\"><pose "
+          "relative_to=\"a_frame\"/></frame>"),
+      "t.sdf", "", unsupported);
+  REQUIRE(world.start_poses.size() == 2);
+  CHECK(world.start_poses[0].X_WB.p == Eigen::Vector3d(1, 0, 0));
+  CHECK(world.start_poses[1].X_WB.p == Eigen::Vector3d(0, 2, 0));
+  CHECK(unsupported ==
+        std::vector<std::string>{"t.sdf:3: the <frame> \"a\" has another element's name: it is called \"a_frame\""});
+}
+
+TEST_CASE("Names are given, not reserved, and not twice") {
+  const std::string frame = "<frame name=\"a\"/>";
+  CHECK(error_of(sdf("<frame/>")).find("test.sdf:3: a <frame> needs a name") == 0);
+  CHECK(error_of(sdf("<frame name=\"world\"/>")).find("reserved") != std::string::npos);
+  CHECK(error_of(sdf("<frame name=\"__root__\"/>")).find("reserved") != std::string::npos);
+  CHECK(error_of(sdf(frame + "\n" + frame)) == "test.sdf:4: <frame> has the name \"a\" of the <frame> at test.sdf:3");
+}

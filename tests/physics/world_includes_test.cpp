@@ -113,7 +113,8 @@ TEST_CASE("The same model is included under many names, and not twice under one"
                                          include("block", "<name>b</name><pose>2 0 0 0 0 0</pose>"));
   CHECK(is_at(loaded.place(0), 1, 0, 0));
   CHECK(is_at(loaded.place(1), 2, 0, 0));
-  CHECK_THAT(error_of(folder, include("block") + include("block")), Contains("w.sdf") && Contains("[m]"));
+  CHECK_THAT(error_of(folder, include("block") + include("block")),
+             Contains("w.sdf") && Contains("has the name \"m\""));
 }
 
 // The frame "top" is 0.5 above the model's origin and turned with it: where it is put, the origin is 0.5 below.
