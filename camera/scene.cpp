@@ -1,13 +1,12 @@
 #include "camera/scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "camera/mesh_facing.hpp"
+#include "camera/ray_packets.hpp"
 
 namespace kenaf::camera {
 
@@ -105,10 +104,8 @@ bool same_pose(const physics::Pose& a, const physics::Pose& b) {
 }  // namespace
 
 void RayBatch::resize(std::size_t count) {
-  for (auto* numbers :
-       {&from_x, &from_y, &from_z, &along_x, &along_y, &along_z, &near, &far, &along_triangle_u, &along_triangle_v})
-    numbers->resize(count);
-  for (auto* numbers : {&face, &primitive, &geometry, &instance}) numbers->resize(count);
+  for (auto* numbers : {&from_x, &from_y, &from_z, &along_x, &along_y, &along_z, &near, &far}) numbers->resize(count);
+  face.resize(count);
 }
 
 struct Scene::Implementation {
@@ -282,37 +279,36 @@ struct Scene::Implementation {
     return out;
   }
 
-  FaceId face_of_hit(const RayBatch& rays, std::size_t i) const {
-    if (rays.geometry[i] == RTC_INVALID_GEOMETRY_ID) return kNothing;
-    if (rays.instance[i] != RTC_INVALID_GEOMETRY_ID) {
-      const Part& part = parts[rays.instance[i]];
-      return part.first_face + part.surface.face_of_triangle[rays.primitive[i]];
+  FaceId face_of_hit(const RTCHit16& hits, std::size_t i) const {
+    if (hits.geomID[i] == RTC_INVALID_GEOMETRY_ID) return kNothing;
+    if (hits.instID[0][i] != RTC_INVALID_GEOMETRY_ID) {
+      const Part& part = parts[hits.instID[0][i]];
+      return part.first_face + part.surface.face_of_triangle[hits.primID[i]];
     }
-    if (rays.geometry[i] == 0) return boxes_first_face + fixed_surface.face_of_triangle[rays.primitive[i]];
-    return mesh_first_face[rays.geometry[i] - 1] + rays.primitive[i];
+    if (hits.geomID[i] == 0) return boxes_first_face + fixed_surface.face_of_triangle[hits.primID[i]];
+    return mesh_first_face[hits.geomID[i] - 1] + hits.primID[i];
   }
 };
 
 namespace {
 
-RTCIntersectContext coherent() {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
-}
-
-RTCRayNp rays_for_embree(RayBatch& rays) {
-  RTCRayNp out{};
-  out.org_x = rays.from_x.data();
-  out.org_y = rays.from_y.data();
-  out.org_z = rays.from_z.data();
-  out.dir_x = rays.along_x.data();
-  out.dir_y = rays.along_y.data();
-  out.dir_z = rays.along_z.data();
-  out.tnear = rays.near.data();
-  out.tfar = rays.far.data();
-  return out;
+// The rays from `first` on, up to 16. Returns how many.
+std::size_t load_packet(const RayBatch& rays, std::size_t first, PacketMask& cast, RTCRay16& out) {
+  const std::size_t count = std::min(kPacket, rays.size() - first);
+  const auto load = [&](const std::vector<float>& from, float* to) { std::copy_n(from.data() + first, count, to); };
+  load(rays.from_x, out.org_x);
+  load(rays.from_y, out.org_y);
+  load(rays.from_z, out.org_z);
+  load(rays.along_x, out.dir_x);
+  load(rays.along_y, out.dir_y);
+  load(rays.along_z, out.dir_z);
+  load(rays.near, out.tnear);
+  load(rays.far, out.tfar);
+  std::fill_n(out.time, kPacket, 0.0F);
+  std::fill_n(out.mask, kPacket, ~0U);
+  std::fill_n(out.flags, kPacket, 0U);
+  for (std::size_t i = 0; i < kPacket; ++i) cast.of[i] = i < count ? -1 : 0;
+  return count;
 }
 
 // A plane in single precision, for rays by the thousand: height above it, and its change along the ray.
@@ -360,23 +356,20 @@ void Scene::update(const WorldSnapshot& snapshot) {
 }
 
 void Scene::cast(RayBatch& rays) const {
-  // Embree works on the arrays in place; the second scene only replaces hits that are farther.
-  std::ranges::fill(rays.geometry, RTC_INVALID_GEOMETRY_ID);
-  std::ranges::fill(rays.instance, RTC_INVALID_GEOMETRY_ID);
-  RTCRayHitNp both{};
-  both.ray = rays_for_embree(rays);
-  both.hit.u = rays.along_triangle_u.data();
-  both.hit.v = rays.along_triangle_v.data();
-  both.hit.primID = rays.primitive.data();
-  both.hit.geomID = rays.geometry.data();
-  both.hit.instID[0] = rays.instance.data();
-  RTCIntersectContext context = coherent();
-  const auto count = static_cast<unsigned>(rays.size());
-  rtcIntersectNp(impl_->fixed.get(), &context, &both, count);
-  if (!impl_->parts.empty()) rtcIntersectNp(impl_->moving.get(), &context, &both, count);
+  // The second scene only replaces hits that are farther.
+  PacketMask cast;
+  RTCRayHit16 packet{};
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::size_t count = load_packet(rays, first, cast, packet.ray);
+    std::ranges::fill(packet.hit.geomID, RTC_INVALID_GEOMETRY_ID);
+    std::ranges::fill(packet.hit.instID[0], RTC_INVALID_GEOMETRY_ID);
+    intersect(impl_->fixed.get(), cast, packet);
+    if (!impl_->parts.empty()) intersect(impl_->moving.get(), cast, packet);
+    std::copy_n(packet.ray.tfar, count, rays.far.data() + first);
+    for (std::size_t i = 0; i < count; ++i) rays.face[first + i] = impl_->face_of_hit(packet.hit, i);
+  }
 
-  // Hits to faces, then the planes: n . (from + t along) = d at t = -height / climb.
-  for (std::size_t i = 0; i < rays.size(); ++i) rays.face[i] = impl_->face_of_hit(rays, i);
+  // The planes: n . (from + t along) = d at t = -height / climb.
   for (std::size_t p = 0; p < impl_->world.planes.size(); ++p) {
     const FloatPlane plane(impl_->world.planes[p]);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -390,9 +383,6 @@ void Scene::cast(RayBatch& rays) const {
 
 void Scene::cast_any(RayBatch& rays) const {
   // Planes first: a ray that comes down through one is marked as Embree marks occluded rays, with far = -infinity.
-  const RTCRayNp all = rays_for_embree(rays);
-  RTCIntersectContext context = coherent();
-  const auto count = static_cast<unsigned>(rays.size());
   for (const physics::GroundPlane& ground : impl_->world.planes) {
     const FloatPlane plane(ground);
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -400,9 +390,14 @@ void Scene::cast_any(RayBatch& rays) const {
       if (climb < 0 && height > -climb * rays.near[i] && height < -climb * rays.far[i]) rays.far[i] = -kInfinity;
     }
   }
-  rtcOccludedNp(impl_->fixed.get(), &context, &all, count);
-  if (!impl_->parts.empty()) rtcOccludedNp(impl_->moving.get(), &context, &all, count);
-  for (std::size_t i = 0; i < rays.size(); ++i) rays.face[i] = rays.far[i] == -kInfinity ? 0 : kNothing;
+  PacketMask cast;
+  RTCRay16 packet{};
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::size_t count = load_packet(rays, first, cast, packet);
+    occlude(impl_->fixed.get(), cast, packet);
+    if (!impl_->parts.empty()) occlude(impl_->moving.get(), cast, packet);
+    for (std::size_t i = 0; i < count; ++i) rays.face[first + i] = packet.tfar[i] == -kInfinity ? 0 : kNothing;
+  }
 }
 
 PlacedFace Scene::face(FaceId id) const {

@@ -39,15 +39,12 @@ struct Sphere {
   double radius_m;
 };
 
-// Rays and their hits as structure of arrays, as Embree takes them. resize() keeps allocated memory.
+// Rays and their hits as structure of arrays. resize() keeps allocated memory.
 struct RayBatch {
   std::vector<float> from_x, from_y, from_z, along_x, along_y, along_z, near, far;  // far: after cast() the hit
   std::vector<FaceId> face;
   void resize(std::size_t count);
   std::size_t size() const { return face.size(); }
-  // further results of Embree, which needs the room
-  std::vector<std::uint32_t> primitive, geometry, instance;
-  std::vector<float> along_triangle_u, along_triangle_v;
 };
 
 class Scene {

@@ -45,6 +45,10 @@ endif()
 
 add_library(kenaf_warnings INTERFACE)
 target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND KENAF_COMPILE_TOGETHER)
+  # a source file of its own that is included is no header: what is in its unnamed namespace stays in it
+  target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+endif()
 # g++ 12 warns wrongly of std::string's own operator+ in optimised builds (GCC bug 105651), and of <regex> under the
 # sanitizers (GCC bug 105562).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -53,10 +57,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
     # likewise of a moved std::string, once its header is precompiled
     target_compile_options(kenaf_warnings INTERFACE
       $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-stringop-overflow>)
-  endif()
-  if(KENAF_COMPILE_TOGETHER)
-    # a source file of its own that is included is no header: what is in its unnamed namespace stays in it
-    target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
   endif()
   if(KENAF_SANITIZE)
     target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
