@@ -29,7 +29,7 @@ measure() {  # ROBOT NICENESS
   "$bin/can_loop" --no-drives --robot "$work/$1.toml" --cycles "$cycles" || echo "can_jitter: the robot was lost"
   kill "$drives" "$listener" "$load"
   wait "$drives" "$listener" "$load" 2>/dev/null || true
-  # from the first command to move on: the opening is not in real time
+  # from the first command to move on: while it opens, the library waits for SDO answers between its commands
   awk '$3 ~ /^201#0F00/ && $3 !~ /^201#0F0000000000/ { moves = 1 } moves' "$work/bus.log" >"$work/driving.log"
   "$bin/kenaf-canlog" --figures --robot "$work/$1.toml" "$work/driving.log" | grep -E '^(SYNC|commands|late)' || true
 }

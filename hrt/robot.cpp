@@ -75,10 +75,11 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
 }
 
 void Robot::begin_thread(const robot::State& first) {
-  std::promise<void> begun;
+  std::promise<void> prepared, begun;
   std::future<void> outcome = begun.get_future();
-  thread_ = start_quiet_thread([this, first, begun = std::move(begun)]() mutable {
+  thread_ = start_quiet_thread([this, first, may_begin = prepared.get_future(), begun = std::move(begun)]() mutable {
     try {
+      may_begin.get();
       transport_->begin_cycles();
       begun.set_value();
     } catch (...) {
@@ -87,6 +88,12 @@ void Robot::begin_thread(const robot::State& first) {
     }
     run(first);
   });
+  try {
+    transport_->prepare_cycles(thread_.native_handle());
+    prepared.set_value();
+  } catch (...) {
+    prepared.set_exception(std::current_exception());
+  }
   try {
     outcome.get();
   } catch (...) {

@@ -121,7 +121,7 @@ class Robot {
   void run_call(Call& call, std::unique_lock<std::mutex>& lock);
   void end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text);
 
-  void begin_thread(const robot::State& first);  // throws what begin_cycles() of the transport throws
+  void begin_thread(const robot::State& first);  // throws what prepare_cycles() and begin_cycles() throw
   void run(robot::State state);
   std::optional<robot::Command> answer(const robot::State& state);  // nullopt: closed before
   bool lock_soon(std::unique_lock<std::mutex>& lock) const;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "kenaf/hrt.h"
 #include "robot/command.hpp"
@@ -27,7 +28,11 @@ class Transport {
   // Throws Error whose text says what to start or to connect.
   virtual Connection open(const hrt_config& config) = 0;
 
-  // Called once after open(), by the thread that from then on calls wait_state and send for all cycles. Throws Error.
+  // Called once after open(), by the same thread, as soon as the thread of the cycles has been made: before that one
+  // is waited for, and before it calls begin_cycles. Throws Error.
+  virtual void prepare_cycles([[maybe_unused]] std::thread::native_handle_type thread) {}
+
+  // Called once by the thread that from then on calls wait_state and send for all cycles. Throws Error.
   virtual void begin_cycles() {}
 
   // Waits for the next cycle's state, whose frame is greater than all before; nullopt after interrupt(). Throws

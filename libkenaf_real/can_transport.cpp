@@ -154,6 +154,10 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
   return {.period_s = s.period_s, .lockstep = false};
 }
 
+void CanTransport::prepare_cycles(std::thread::native_handle_type thread) {
+  begin_real_time(thread, session_->robot);
+}
+
 void CanTransport::begin_cycles() {
   begin_real_time(session_->robot);
   session_->end_opening();

@@ -28,6 +28,7 @@ class CanTransport final : public hrt::Transport {
   CanTransport& operator=(const CanTransport&) = delete;
 
   hrt::Connection open(const hrt_config& config) override;
+  void prepare_cycles(std::thread::native_handle_type thread) override;
   void begin_cycles() override;
   std::optional<robot::State> wait_state() override;
   void send(const robot::Command& command) override;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <linux/capability.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -98,11 +99,21 @@ Scheduling scheduling_of_caller() {
 }
 
 void give_back(const Scheduling& scheduling) {
-  sched_setscheduler(scheduling.thread, scheduling.policy, &scheduling.parameter);
+  // Without CAP_SYS_NICE the flag by which new threads do not inherit stays: the thread is a usual one all the same.
+  if (sched_setscheduler(scheduling.thread, scheduling.policy, &scheduling.parameter) != 0)
+    sched_setscheduler(scheduling.thread, scheduling.policy | SCHED_RESET_ON_FORK, &scheduling.parameter);
 }
 
 void begin_real_time(const canbus::RobotBus& bus) {
   if (bus.realtime_priority) set_priority(*bus.realtime_priority);
+}
+
+void begin_real_time(std::thread::native_handle_type thread, const canbus::RobotBus& bus) {
+  if (!bus.realtime_priority) return;
+  const sched_param parameter{.sched_priority = *bus.realtime_priority};
+  const int error = pthread_setschedparam(thread, SCHED_FIFO, &parameter);
+  if (error != 0)
+    throw Error(HRT_E_CONFIG, refusal_of_priority(*bus.realtime_priority, error, soft_limit(RLIMIT_RTPRIO)));
 }
 
 std::string describe_real_time(const canbus::RobotBus& bus) {

@@ -12,6 +12,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <thread>
 
 #include "can/canbus/robot_bus.hpp"
 
@@ -34,6 +35,11 @@ void give_back(const Scheduling& scheduling);  // a thread that has ended needs 
 // enabled miss their commands in a late opening too. Threads that it starts do not inherit it. Throws as
 // check_real_time().
 void begin_real_time(const canbus::RobotBus& bus);
+
+// The same for a thread that was just made: until it has run, it cannot do so itself, and on a computer busy with more
+// urgent threads than the usual ones it would first have to wait for a processor. Threads that it starts inherit the
+// priority until it has called the function above.
+void begin_real_time(std::thread::native_handle_type thread, const canbus::RobotBus& bus);
 
 // "cycles by SCHED_FIFO at priority 50, memory locked".
 std::string describe_real_time(const canbus::RobotBus& bus);

@@ -239,6 +239,17 @@ TEST_CASE("Cycles that cannot begin are an error of init, and the robot is close
   CHECK(hrt_close() == HRT_OK);
 }
 
+TEST_CASE("A thread that cannot be prepared for its cycles is an error of init, and ends") {
+  const auto robot = use_fake_robot();
+  robot->prepare_error = "the system refuses SCHED_FIFO";
+  CHECK(hrt_kenaf_init() == HRT_E_CONFIG);
+  CHECK(std::string(hrt_last_error()) == robot->prepare_error);
+  CHECK(robot->closed);
+  use_fake_robot();
+  CHECK(hrt_kenaf_init() == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
 TEST_CASE("What init has set up is told in as many bytes as there are") {
   const auto robot = use_fake_robot();
   robot->setup = "track left watches its commands\ntrack right watches its commands";

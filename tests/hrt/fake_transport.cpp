@@ -90,6 +90,10 @@ void FakeTransport::send(const robot::Command& command) {
   robot_->commands.push_back(command);
 }
 
+void FakeTransport::prepare_cycles(std::thread::native_handle_type) {
+  if (!robot_->prepare_error.empty()) throw Error(HRT_E_CONFIG, robot_->prepare_error);
+}
+
 void FakeTransport::begin_cycles() {
   if (!robot_->cycles_error.empty()) throw Error(HRT_E_CONFIG, robot_->cycles_error);
 }

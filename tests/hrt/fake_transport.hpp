@@ -33,9 +33,10 @@ struct FakeRobot {
   std::vector<robot::Command> commands;  // commands[i] answers frame i + 1
   std::vector<double> travel_m;          // travel_m[i] is the left track's in frame i + 1
   bool interrupted = false, closed = false;
-  std::string cycles_error;  // why its cycles cannot begin; "": they can
-  std::string setup;         // what open found and set up
-  std::string close_error;   // what close says of a robot that did not stop; "": it stopped
+  std::string cycles_error;   // why its cycles cannot begin; "": they can
+  std::string prepare_error;  // why the thread of its cycles cannot be prepared; "": it can
+  std::string setup;          // what open found and set up
+  std::string close_error;    // what close says of a robot that did not stop; "": it stopped
 };
 
 class FakeTransport final : public Transport {
@@ -47,6 +48,7 @@ class FakeTransport final : public Transport {
   void interrupt() override;
   void close() override;
   std::string setup() const override { return robot_->setup; }
+  void prepare_cycles(std::thread::native_handle_type thread) override;
   void begin_cycles() override;
   double round_trip_s() const override { return 0.002; }
   bool is_paused() const override { return false; }

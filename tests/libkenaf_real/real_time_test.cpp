@@ -3,10 +3,14 @@
 // the test.
 #include "libkenaf_real/real_time.hpp"
 
+#include <pthread.h>
 #include <sched.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cerrno>
+#include <future>
 #include <thread>
 
 #include "hrt/error.hpp"
@@ -67,6 +71,47 @@ TEST_CASE("Opening and cycles run at the described priority, or the robot is not
   CHECK((cycle.policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO);
   CHECK(cycle.parameter.sched_priority == 3);
   CHECK(policy_now() == before);
+}
+
+TEST_CASE("The thread of the cycles is at its priority before it has run") {
+  const std::string key = "interface = \"can0\"";
+  const ChangedRobot changed({{key, key + "\nrealtime_priority = 3"}});
+  RobotOnBus robot(changed.path());
+  try {
+    robot.open();
+  } catch (const hrt::Error&) {
+    return;  // this system forbids real time
+  }
+  std::promise<void> go;
+  std::thread cycles([&, may_go = go.get_future()]() mutable {
+    may_go.get();
+    robot.transport.begin_cycles();
+  });
+  robot.transport.prepare_cycles(cycles.native_handle());
+  int policy = -1;
+  sched_param parameter{};
+  CHECK(pthread_getschedparam(cycles.native_handle(), &policy, &parameter) == 0);
+  CHECK(policy == SCHED_FIFO);
+  CHECK(parameter.sched_priority == 3);
+  go.set_value();
+  cycles.join();
+}
+
+TEST_CASE("A user without privileges, too, gets a thread's scheduling back after its real time") {
+  canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
+  bus.realtime_priority = 3;
+  std::thread([&] {
+    const Scheduling before = scheduling_of_caller();
+    try {
+      begin_real_time(bus);
+    } catch (const hrt::Error&) {
+      return;  // this system forbids real time
+    }
+    constexpr int kNobody = 65534;
+    syscall(SYS_setresuid, kNobody, kNobody, kNobody);  // of this thread alone; fails for who has no privileges
+    give_back(before);
+    CHECK(policy_now() == (before.policy & ~SCHED_RESET_ON_FORK));
+  }).join();
 }
 
 TEST_CASE("An opening that fails, or is closed before its first cycle, gives its thread its scheduling back") {
