@@ -199,7 +199,7 @@ NodeFacts commission(Master& master, const RobotBus& bus, double period_s, doubl
     const std::optional<double> rated_a = set_up_drive(master, bus, i, period_s);
     facts.rated_current_a.push_back(rated_a.value_or(0));
     facts.has_currents = facts.has_currents && rated_a;
-    facts.watches.push_back(find_watches(master, bus, i));
+    facts.watches.push_back(find_watches(master, bus, i, period_s));
   }
   if (bus.inclinometer) facts.slope_unit_rad = set_up_inclinometer(master, bus);
   for (const NamedNode& node : nodes_of(bus))

@@ -29,8 +29,9 @@ using AllWatches = std::vector<DriveWatches>;  // of RobotBus::drives
 double longest_command_gap_s(const canbus::RobotBus& bus, std::size_t drive, double period_s);
 
 // In the set-up of a drive that is not enabled: begins its watch of the heartbeat, and looks for its event timer.
-// Throws hrt::Error(HRT_E_DEVICE) if it has no watch, or not those that the description requires.
-DriveWatches find_watches(Master& master, const canbus::RobotBus& bus, std::size_t drive);
+// Throws hrt::Error(HRT_E_DEVICE) if it has no watch, or not those that the description requires, or only one that
+// would stop the robot later than can.stop_within_s.
+DriveWatches find_watches(Master& master, const canbus::RobotBus& bus, std::size_t drive, double period_s);
 
 // Begins the event timers, with a cycle after each drive: enabled drives stay where they are. A timer that refuses its
 // value becomes one that is not there.

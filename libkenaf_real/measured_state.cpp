@@ -69,7 +69,7 @@ robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
 // takes it of the wheels of a side. One that slips or spins free counts with its share, and no drive is singled out.
 void MeasuredState::add_to_side(std::size_t i, const DriveInput& input, robot::State& state) {
   const canbus::DriveOnBus& drive = bus_.drives[i];
-  const auto count = static_cast<double>(drives_of_side(bus_, drive.side));
+  const auto count = static_cast<double>(drive.drives_of_side);
   Travel& travel = travels_[i];
   travel.counts += last_beat_ == 0 ? 0 : difference(input.position, travel.last);
   travel.last = input.position;

@@ -160,6 +160,7 @@ void read_side(TomlReader& table, std::string_view part, robot::Track side, Driv
   if (drives.size() > kMaxDrivesASide)
     table.fail(key, fmt::format("lists {} drives, but must list at most {}", drives.size(), kMaxDrivesASide));
   kind.side = side;
+  kind.drives_of_side = drives.size();
   for (std::size_t i = 0; i < drives.size(); ++i) {
     kind.name = fmt::format("{} {}", part, key);
     if (drives.size() > 1) kind.name += fmt::format(" {}", i + 1);
@@ -182,9 +183,10 @@ void read_sides(TomlReader table, std::string_view part, TomlReader motor, Robot
   table.finish();
   if (longest_stop_s(bus) > bus.stop_within_s) {
     table.fail("quick_stop_mps2",
-               fmt::format("lets a {} run for {:.3f} s after the master fell silent (master_silence_s and a stop "
-                           "from {} m/s); it must stop within {} s (can.stop_within_s)",
-                           part, longest_stop_s(bus), kind.max_speed, bus.stop_within_s));
+               fmt::format("lets a {} run for {:.3f} s after the master fell silent (master_silence_s, a ramp from {} "
+                           "m/s, and the drive's lag behind it, speed_loop_s, until {} m/s); it must stop within {} s "
+                           "(can.stop_within_s)",
+                           part, longest_stop_s(bus), kind.max_speed, kAtRest_mps, bus.stop_within_s));
   }
 }
 
@@ -361,11 +363,6 @@ bool has_flippers(const RobotBus& bus) {
   return std::ranges::any_of(bus.drives, &DriveOnBus::is_flipper);
 }
 
-std::size_t drives_of_side(const RobotBus& bus, robot::Track side) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      bus.drives, [side](const DriveOnBus& drive) { return !drive.is_flipper() && drive.side == side; }));
-}
-
 canopen::DriveMode first_mode(const DriveOnBus& drive) {
   return drive.homing && drive.device.mode_change == ModeChange::disabled ? DriveMode::homing : drive.mode;
 }
@@ -375,8 +372,20 @@ int life_time_factor(const RobotBus& bus) {
 }
 
 double longest_stop_s(const RobotBus& bus) {
+  return longest_stop_s(bus, bus.master_silence_s);
+}
+
+double longest_stop_s(const RobotBus& bus, double silence_s) {
   const DriveOnBus& track = bus.drives.front();
-  return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
+  const double v = track.max_speed, a = track.quick_stop_deceleration, tau = bus.speed_loop_s;
+  const double ramp_s = v / a;
+  if (tau == 0) return silence_s + ramp_s;
+
+  // The speed u follows the demand by tau u' = (v - a t) - u, u(0) = v:
+  //   u(t) = v - a t + a tau (1 - exp(-t / tau)), at the ramp's end a tau (1 - exp(-ramp_s / tau)),
+  // and from there on decays with tau.
+  const double at_end_of_ramp = -a * tau * std::expm1(-ramp_s / tau);
+  return silence_s + ramp_s + tau * std::log(std::max(1.0, at_end_of_ramp / kAtRest_mps));
 }
 
 std::int32_t position_to_drive(const DriveUnits& units, double position) {

@@ -50,6 +50,7 @@ struct DriveOnBus {
   double min_position, max_position;             // rad; flippers only
   std::optional<Homing> homing;                  // flippers; nullopt: the encoder is absolute
   Device device{};                               // what its type needs beyond the standards
+  std::size_t drives_of_side = 1;                // itself and those that turn the same track or wheels; flippers: 1
 
   bool is_flipper() const { return flipper.has_value(); }
 };
@@ -98,7 +99,7 @@ struct RobotBus {
   std::optional<int> realtime_priority;
   bool lock_memory = false;
   double track_gauge_m;  // between the tracks' centre lines; 0: not in the description
-  double speed_loop_s;   // time constant of the track drives' own speed control: for simulated ones only
+  double speed_loop_s;   // time constant of the track drives' own speed control, by which they lag behind their ramps
   // Those of the left side, at least one, front first; those of the right side, likewise; the flippers that the robot
   // has, in the order of robot::Flipper. All of a side are commanded the same speed.
   std::vector<DriveOnBus> drives;
@@ -108,8 +109,6 @@ struct RobotBus {
 };
 
 bool has_flippers(const RobotBus& bus);
-// Returns how many drives turn the track or the wheels of this side: 1, or more.
-std::size_t drives_of_side(const RobotBus& bus, robot::Track side);
 
 // Takes a shipped name ("kenaf") or the path of a TOML file. Throws DescriptionError with file, line and column: no
 // table [can], a key that is missing, unknown or out of range, a node id used twice, values that contradict each other
@@ -124,9 +123,14 @@ canopen::DriveMode first_mode(const DriveOnBus& drive);
 // fit in master_silence_s.
 int life_time_factor(const RobotBus& bus);
 
-// Returns the time from the master's last sign of life until the slowest track stands: master_silence_s plus a quick
-// stop from full speed.
+// A track or wheel that is slower than this is at rest. Chosen: a drive that follows its demand with a lag never stands
+// exactly, and goes on from here by this times its time constant: 1 mm at 0.1 s.
+inline constexpr double kAtRest_mps = 0.01;
+
+// Returns the time from the master's last sign of life until the slowest track is at rest: `silence_s` (first form:
+// master_silence_s) until the drives notice, a quick stop from full speed, and the lag of their speed control.
 double longest_stop_s(const RobotBus& bus);
+double longest_stop_s(const RobotBus& bus, double silence_s);
 
 // Converts track travel in m or flipper angle in rad, and speeds. Rounded to the nearest towards the drive; the caller
 // keeps within the limits.

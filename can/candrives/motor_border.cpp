@@ -38,7 +38,7 @@ Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantStat
   if (!on_bus.is_flipper()) {
     motor.position = to_counts(units, state.track_m[on_bus.side]);
     motor.velocity = state.track_mps[on_bus.side] * units.counts_per_unit;
-    motor.current_a = state.track_a[on_bus.side] / static_cast<double>(drives_of_side(bus, on_bus.side));
+    motor.current_a = state.track_a[on_bus.side] / static_cast<double>(on_bus.drives_of_side);
     return motor;
   }
   const robot::Flipper flipper = *on_bus.flipper;
@@ -66,7 +66,7 @@ void add_command(const canbus::RobotBus& bus, std::size_t drive, const Drive& fr
   double velocity = demand.velocity;
   if (from.is_powered() && from.holds_position())
     velocity += kTrackPositionGain_ps * (demand.position - motor.position);
-  to.track_mps[on_bus.side] += velocity / units.counts_per_unit / static_cast<double>(drives_of_side(bus, on_bus.side));
+  to.track_mps[on_bus.side] += velocity / units.counts_per_unit / static_cast<double>(on_bus.drives_of_side);
 }
 
 }  // namespace kenaf::candrives

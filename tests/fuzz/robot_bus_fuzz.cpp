@@ -44,10 +44,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(!bus.interface.empty() && canbus::longest_stop_s(bus) <= bus.stop_within_s && bus.stop_within_s <= 2);
     std::array<bool, canopen::kMaxNode + 1> taken{};
     taken[bus.master] = true;
-    check(drives_of_side(bus, robot::kLeft) >= 1 && drives_of_side(bus, robot::kRight) >= 1);
     std::set<std::string> names;
     for (const canbus::DriveOnBus& drive : bus.drives) {
       check_drive(drive, !drive.is_flipper());
+      check(drive.drives_of_side == static_cast<std::size_t>(std::ranges::count_if(bus.drives, [&](const auto& other) {
+              return drive.is_flipper() ? &other == &drive : !other.is_flipper() && other.side == drive.side;
+            })));
       check(!std::exchange(taken[drive.node], true) && names.insert(drive.name).second);
     }
     if (bus.gyro) check(bus.gyro->first_bit + bus.gyro->bits <= 64 && !std::exchange(taken[bus.gyro->node], true));

@@ -114,7 +114,17 @@ TEST_CASE("Opening says of each drive which watches it has") {
     RobotOnBus robot;
     refuse(robot, 2, 0x101601, kObjectMissing);
     refuse(robot, 2, 0x140005, kSubIndexMissing);
-    CHECK_THAT(refusal_of(robot), Catch::Contains("track right (node 2) watches neither"));
+    CHECK_THAT(refusal_of(robot), Catch::Contains("track right (node 2) watches neither") &&
+                                      Catch::Contains("(0x1400:05): nothing would stop it") &&
+                                      Catch::Contains("`error_control = \"node guarding\"` in a device file"));
+    CHECK(robot.all_are(PowerState::switch_on_disabled));
+  }
+  SECTION("nor is one driven whose commands the description does not let it watch, and that has nothing else") {
+    const ChangedRobot without = kenaf_with("event_timer = false");
+    RobotOnBus robot(without.path(), canbus::load_robot_bus("kenaf"));
+    refuse(robot, 2, 0x101601, kObjectMissing);
+    CHECK_THAT(refusal_of(robot), Catch::Contains("track right (node 2) watches neither") &&
+                                      Catch::Contains("(0x1400:05, `event_timer = false` in [can])"));
     CHECK(robot.all_are(PowerState::switch_on_disabled));
   }
   SECTION("event_timer = false: known, and no warning") {
@@ -181,6 +191,28 @@ TEST_CASE("Closing ends both watches: the drives hold their position without a m
     CHECK(objects.value({0x1016, 1}) == 0);
     CHECK(objects.value({0x1400, 5}) == 0);
   }
+}
+
+TEST_CASE("A drive that waits for its commands alone, and too long for the robot's stop, is refused") {
+  const support::TemporaryFolder folder;
+  const std::string device = (folder.path() / "slow.toml").string();
+  std::ofstream(device) << "command_every = 3\ncommand_pdo = 2\n";
+  const ChangedRobot slow({{"[can.track]\n", "[can.track]\ndevice = \"" + device + "\"\n"}});
+
+  // Three commands, each third cycle of 20 ms: 0.18 s. From 0.5 m/s with the drives' lag 0.0651 s more
+  // (robot_bus_test).
+  RobotOnBus robot(slow.path());
+  robot.config.period_s = 0.02;
+  refuse(robot, 2, 0x101601, kObjectMissing);
+  CHECK_THAT(refusal_of(robot), Catch::Contains("track right (node 2) watches its commands alone (0x1401:05)") &&
+                                    Catch::Contains("0.18 s") && Catch::Contains("0.245 s") &&
+                                    Catch::Contains("within 0.2 s (can.stop_within_s)"));
+  CHECK(robot.all_are(PowerState::switch_on_disabled));
+
+  // With the heartbeat it does not wait so long.
+  RobotOnBus both(slow.path());
+  both.config.period_s = 0.02;
+  CHECK_NOTHROW(both.open());
 }
 
 TEST_CASE("Three commands may stay away at least") {

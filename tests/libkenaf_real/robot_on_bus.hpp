@@ -1,6 +1,7 @@
 // libkenaf_real's transport on a bus in this process, with the simulated drives of a robot on it and a time of its own.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -29,11 +30,16 @@ class BorrowedBus final : public canopen::Bus {
   canopen::Bus& bus_;
 };
 
-// Follows its command exactly, and leans and turns as the test says.
+// Follows its command exactly, or with a lag, and leans and turns as the test says.
 class LeaningPlant final : public candrives::Plant {
  public:
   void advance(canopen::Time step, const candrives::PlantCommand& command) override {
-    tracks_.advance(step, command);
+    const double step_s = std::chrono::duration<double>(step).count();
+    const double share = speed_loop_s > 0 ? -std::expm1(-step_s / speed_loop_s) : 1;
+    candrives::PlantCommand followed = command;
+    for (std::size_t i = 0; i < robot::kTrackCount; ++i)
+      followed.track_mps[i] = state_.track_mps[i] + share * (command.track_mps[i] - state_.track_mps[i]);
+    tracks_.advance(step, followed);
     state_ = tracks_.state();
     state_.roll_rad = roll_rad;
     state_.pitch_rad = pitch_rad;
@@ -41,6 +47,7 @@ class LeaningPlant final : public candrives::Plant {
   }
   const candrives::PlantState& state() const override { return state_; }
   double roll_rad = 0, pitch_rad = 0, yaw_rate_radps = 0;
+  double speed_loop_s = 0;
 
  private:
   candrives::IdealPlant tracks_;

@@ -62,6 +62,28 @@ TEST_CASE("Each real robot opens, drives forward, turns, closes, and its sides s
   }
 }
 
+TEST_CASE("Drives that lag behind their ramps are at rest when longest_stop_s says so") {
+  for (const std::string& name : kReal) {
+    CAPTURE(name);
+    RobotOnBus robot(name);
+    robot.config.track_gauge_mm = 1e3 * robot.description.track_gauge_m;
+    robot.plant.speed_loop_s = robot.description.speed_loop_s;
+    robot.open();
+    const double full_mps = robot.description.drives.front().max_speed;
+    robot.run(300, drive_at(full_mps, full_mps));
+    CHECK(robot.plant.state().track_mps[0] == Approx(full_mps).epsilon(1e-3));
+    robot.wire.stop_master();
+    const double died_s = robot.seconds();
+    while (std::abs(robot.plant.state().track_mps[0]) > canbus::kAtRest_mps && robot.seconds() < died_s + 3)
+      robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(1));
+
+    // The last heartbeat was up to 20 ms before the death; steps of 1 ms here, in the drives and in their plant.
+    const double rest_s = robot.seconds() - died_s, longest_s = longest_stop_s(robot.description);
+    CHECK(rest_s <= longest_s + 0.003);
+    CHECK(rest_s >= longest_s - robot.description.master_heartbeat_s - 0.003);
+  }
+}
+
 TEST_CASE("Every real robot's cycle at 100 Hz fits its bus with room for half as much again") {
   for (const std::string& name : kReal) {
     CAPTURE(name);

@@ -62,8 +62,9 @@ TEST_CASE("The shipped robot's bus is read as its description says") {
   CHECK(bus.inclinometer->node == 7);
   REQUIRE(bus.gyro);
   CHECK(bus.gyro->units_per_radps == 3000);
-  // 0.1 s without a heartbeat, then from 0.5 m/s to rest at 12.5 m/s^2: 0.04 s
-  CHECK(longest_stop_s(bus) == Approx(0.14));
+  // 0.1 s without a heartbeat, then from 0.5 m/s at 12.5 m/s^2: 0.04 s. There a drive that lags by 0.01 s is still at
+  // 12.5 * 0.01 * (1 - exp(-4)) = 0.12271 m/s, and ln(12.271) = 2.5073 time constants later at 0.01 m/s.
+  CHECK(longest_stop_s(bus) == Approx(0.165073).epsilon(1e-5));
 }
 
 TEST_CASE("A track's way and speed are converted to its motor's counts") {
@@ -221,8 +222,10 @@ TEST_CASE("A side may have several drives, front first, each with its own direct
   CHECK(bus.drives[1].side == robot::kLeft);
   CHECK(bus.drives[1].units.counts_per_unit == -bus.drives[0].units.counts_per_unit);
   CHECK(bus.drives[2].name == "track right");
-  CHECK(drives_of_side(bus, robot::kLeft) == 2);
-  CHECK(drives_of_side(bus, robot::kRight) == 1);
+  CHECK(bus.drives[0].drives_of_side == 2);
+  CHECK(bus.drives[1].drives_of_side == 2);
+  CHECK(bus.drives[2].drives_of_side == 1);
+  CHECK(bus.drives[3].drives_of_side == 1);  // a flipper
 
   const auto left = [](const std::string& list) {
     return with("left = { node = 1, direction = 1 }", "left = " + list);
@@ -249,10 +252,23 @@ TEST_CASE("Devices of others are named, with their traffic, and have no number t
 }
 
 TEST_CASE("A robot that its ground cannot stop within 0.2 s says how long it takes") {
-  // 0.1 s of silence, and 0.5 m/s at 2.5 m/s^2: 0.3 s
-  const std::string slow = with("quick_stop_mps2 = 12.5", "quick_stop_mps2 = 2.5");
+  // 0.1 s of silence, and 0.5 m/s at 2.5 m/s^2: 0.3 s, if the drives follow their ramps exactly
+  std::string slow = with("quick_stop_mps2 = 12.5", "quick_stop_mps2 = 2.5");
   CHECK_THAT(error_of(slow), Catch::Contains("must stop within 0.2 s (can.stop_within_s)"));
-  std::string says = slow;
-  says.replace(says.find("answer_s = 0.5"), 14, "answer_s = 0.5\nstop_within_s = 0.31");
-  CHECK(longest_stop_s(parse_robot_bus(says, "k.toml")) == Approx(0.3));
+  slow.replace(slow.find("answer_s = 0.5"), 14, "answer_s = 0.5\nstop_within_s = 0.31");
+  std::string exact = slow;
+  exact.replace(exact.find("speed_loop_s = 0.01"), 19, "speed_loop_s = 0.0");
+  CHECK(longest_stop_s(parse_robot_bus(exact, "k.toml")) == Approx(0.3));
+  CHECK(longest_stop_s(parse_robot_bus(exact, "k.toml"), 0.25) == Approx(0.45));
+
+  // 2.5 * 0.01 * (1 - exp(-20)) = 0.025 m/s are left at the ramp's end, and 0.01 m/s after 0.01 s * ln(2.5) = 9.2 ms
+  CHECK(longest_stop_s(parse_robot_bus(slow, "k.toml")) == Approx(0.309163).epsilon(1e-5));
+  // a lag of 0.1 s: 2.5 * 0.1 * (1 - exp(-2)) = 0.21617 m/s, 0.1 s * ln(21.617) = 0.307 s
+  std::string lagging = slow;
+  lagging.replace(lagging.find("speed_loop_s = 0.01"), 19, "speed_loop_s = 0.1");
+  CHECK_THAT(error_of(lagging),
+             Catch::Contains("run for 0.607 s") && Catch::Contains("speed_loop_s") && Catch::Contains("within 0.31 s"));
+  // less than 0.01 m/s at the ramp's end: 2.5 * 0.003 = 0.0075 m/s
+  lagging.replace(lagging.find("speed_loop_s = 0.1"), 18, "speed_loop_s = 0.003");
+  CHECK(longest_stop_s(parse_robot_bus(lagging, "k.toml")) == Approx(0.3));
 }
