@@ -14,6 +14,8 @@ using canopen::ObjectAddress;
 using canopen::SdoAbort;
 namespace object = canopen::object;
 
+constexpr std::uint16_t kFirstReceiveMapping = 0x1600;
+
 bool is_record_of_pdo(ObjectAddress at, std::uint16_t first_receive, std::uint16_t first_transmit) {
   constexpr std::uint16_t kRecords = 0x200;
   return (at.index >= first_receive && at.index < first_receive + kRecords) ||
@@ -40,14 +42,16 @@ std::string advice_on_refusal(const Device& device, const SdoRefused& refused) {
     return advice(device, "error_control = \"node guarding\"");
   if (at == object::mode.object && !is_missing(refused.abort)) return advice(device, "halt_blocks_mode = true");
   // An entry's object does not exist, or cannot be in a PDO; the count or the identifier cannot be changed now.
-  if (is_record_of_pdo(at, 0x1600, 0x1a00) && at.sub > 0) {
-    const std::string of_mapping = advice(device, "mapping = \"cia402\"");
+  const bool is_of_command = at.index >= kFirstReceiveMapping && at.index < kFirstReceiveMapping + 4;
+  const std::string of_mapping =
+      advice(device, "mapping = \"cia402\"") + (is_of_command ? advice(device, "command_pdo = 2 (to 4)") : "");
+  if (is_record_of_pdo(at, kFirstReceiveMapping, 0x1a00) && at.sub > 0) {
     const std::string_view key = key_without(refused.value);
     if (key.empty()) return of_mapping;
     return fmt::format("; where its drives have no such object: `{} = false` in [can] or in a device file", key) +
            of_mapping;
   }
-  if (is_record_of_pdo(at, 0x1600, 0x1a00) && !is_missing(refused.abort)) return advice(device, "mapping = \"cia402\"");
+  if (is_record_of_pdo(at, kFirstReceiveMapping, 0x1a00) && !is_missing(refused.abort)) return of_mapping;
   if (is_record_of_pdo(at, 0x1400, 0x1800) && at.sub == 1 && !is_missing(refused.abort))
     return advice(device, "mapping_count_first = true");
   return {};

@@ -57,6 +57,12 @@ void Drive::on_quirks() {
   if (quirks().halt_blocks_mode) dictionary().set(object::controlword.object, canopen::kControlHalt);
   if (quirks().old_target && power_.state() != PowerState::operation_enabled)
     dictionary().set(object::target_velocity.object, kOldTarget);
+  motion_.set_home_offset_direction(quirks().home_offset_negative ? -1 : setup_.scale.home_offset_direction);
+}
+
+bool Drive::lacks(ObjectAddress at) const {
+  const bool is_current = at == object::current_actual.object || at == object::rated_current.object;
+  return (quirks().no_current && is_current) || (quirks().no_voltage && at == object::dc_link_voltage.object);
 }
 
 void Drive::watch_slow_reset(double step_s) {

@@ -46,6 +46,7 @@ class Drive final : public Slave {
  private:
   void on_reset() override;
   void on_quirks() override;
+  bool lacks(canopen::ObjectAddress at) const override;
   void on_overrun() override { fail(canopen::kErrorOverrun); }
   void refresh() override;
   std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress at, std::int64_t value) override;

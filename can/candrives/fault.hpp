@@ -27,6 +27,7 @@ enum class FaultKind : std::uint8_t {
   guarding_only,
   count_first,
   fixed_mapping,
+  first_rpdo_fixed,
   slow_commands,
   mode_locked,
   halt_blocks_mode,
@@ -36,6 +37,9 @@ enum class FaultKind : std::uint8_t {
   velocity_16_bits,
   position_16_bits,
   position_24_bits,
+  no_current,
+  no_voltage,
+  home_offset_negative,
   healed,  // ends all of these
 };
 

@@ -35,6 +35,7 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"node guarding only", FaultKind::guarding_only},
                                                     {"count first", FaultKind::count_first},
                                                     {"fixed mapping", FaultKind::fixed_mapping},
+                                                    {"first rpdo fixed", FaultKind::first_rpdo_fixed},
                                                     {"slow commands", FaultKind::slow_commands},
                                                     {"mode locked", FaultKind::mode_locked},
                                                     {"halt blocks mode", FaultKind::halt_blocks_mode},
@@ -44,6 +45,9 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"velocity 16 bits", FaultKind::velocity_16_bits},
                                                     {"position 16 bits", FaultKind::position_16_bits},
                                                     {"position 24 bits", FaultKind::position_24_bits},
+                                                    {"no current", FaultKind::no_current},
+                                                    {"no voltage", FaultKind::no_voltage},
+                                                    {"home offset negative", FaultKind::home_offset_negative},
                                                     {"healed", FaultKind::healed}});
 
 constexpr std::string_view kBlanks = " \t\r";

@@ -37,6 +37,7 @@ class Motion {
 
   // At rest at the motor's position; objects' position = encoder position + `offset`.
   void reset(const Measured& motor, std::int64_t offset);
+  void set_home_offset_direction(int direction) { scale_.home_offset_direction = direction; }
   // Operation is enabled from here on: earlier commands are not followed.
   void begin(const Measured& motor);
   void set_mode(canopen::DriveMode mode, const Measured& motor);

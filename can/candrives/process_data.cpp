@@ -13,6 +13,7 @@ using canopen::Time;
 namespace {
 
 constexpr std::uint8_t kMaxMapped = 8, kMaxBits = 64;
+constexpr std::uint16_t kFirstReceiveMapping = 0x1600;
 constexpr std::uint8_t kCobId = 1, kTransmission = 2, kInhibit = 3, kEventTimer = 5;
 
 ObjectAddress address_of(std::int64_t mapping_entry) {
@@ -88,7 +89,8 @@ std::optional<SdoAbort> ProcessData::check_cob_id(const State& state, std::int64
 }
 
 std::optional<SdoAbort> ProcessData::check_mapping(const State& state, std::uint8_t sub, std::int64_t value) const {
-  if (quirks_.fixed_mapping) return SdoAbort::cannot_be_mapped;
+  const bool is_first_rpdo = state.mapping == kFirstReceiveMapping;
+  if (quirks_.fixed_mapping || (quirks_.first_rpdo_fixed && is_first_rpdo)) return SdoAbort::cannot_be_mapped;
   const bool may_empty = quirks_.count_first && sub == 0 && value == 0;
   if (is_valid(state) && !may_empty) return SdoAbort::unsupported_access;
   if (sub > 0) {
@@ -110,6 +112,12 @@ std::optional<SdoAbort> ProcessData::check_mapping(const State& state, std::uint
   }
   if (bits > kMaxBits) return SdoAbort::pdo_too_long;
   return std::nullopt;
+}
+
+std::optional<ObjectAddress> ProcessData::mapped_by(ObjectAddress object, std::int64_t value) const {
+  const bool is_entry =
+      object.sub > 0 && std::ranges::any_of(pdos_, [&](const State& state) { return state.mapping == object.index; });
+  return is_entry ? std::optional(address_of(value)) : std::nullopt;
 }
 
 // ---- the data ----

@@ -41,11 +41,15 @@ class ProcessData {
   struct Quirks {
     bool count_first;    // a PDO with mapped objects cannot be switched off, but its mapping emptied while it is valid
     bool fixed_mapping;  // no mapping can be written
+    bool first_rpdo_fixed;  // that of RPDO1 cannot be written
   };
   void set_quirks(Quirks quirks) { quirks_ = quirks; }
 
   // Checks the rules of the two records above; nullopt also if the object belongs to neither.
   std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value) const;
+
+  // Returns the object that `value` maps if it is written to `object`; nullopt: `object` is no entry of a mapping.
+  std::optional<canopen::ObjectAddress> mapped_by(canopen::ObjectAddress object, std::int64_t value) const;
 
   // Called after a write to `object`: a changed PDO restarts.
   void on_written(canopen::ObjectAddress object);

@@ -10,6 +10,7 @@ constexpr std::pair<FaultKind, bool Quirks::*> kSwitches[] = {
     {FaultKind::guarding_only, &Quirks::guarding_only},
     {FaultKind::count_first, &Quirks::count_first},
     {FaultKind::fixed_mapping, &Quirks::fixed_mapping},
+    {FaultKind::first_rpdo_fixed, &Quirks::first_rpdo_fixed},
     {FaultKind::slow_commands, &Quirks::slow_commands},
     {FaultKind::mode_locked, &Quirks::mode_locked},
     {FaultKind::halt_blocks_mode, &Quirks::halt_blocks_mode},
@@ -17,6 +18,9 @@ constexpr std::pair<FaultKind, bool Quirks::*> kSwitches[] = {
     {FaultKind::slow_fault_reset, &Quirks::slow_fault_reset},
     {FaultKind::velocity_unsigned, &Quirks::velocity_unsigned},
     {FaultKind::velocity_16_bits, &Quirks::velocity_16_bits},
+    {FaultKind::no_current, &Quirks::no_current},
+    {FaultKind::no_voltage, &Quirks::no_voltage},
+    {FaultKind::home_offset_negative, &Quirks::home_offset_negative},
 };
 
 }  // namespace

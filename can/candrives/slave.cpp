@@ -72,12 +72,12 @@ canopen::ObjectAccess Slave::object_access() {
 bool Slave::is_hidden(ObjectAddress at) const {
   const bool is_heartbeat = at.index == canopen::object::consumer_heartbeat_1.object.index ||
                             at.index == canopen::object::producer_heartbeat_ms.object.index;
-  return quirks_.guarding_only && is_heartbeat;
+  return (quirks_.guarding_only && is_heartbeat) || lacks(at);
 }
 
 void Slave::set_quirks(const Quirks& quirks) {
   quirks_ = quirks;
-  process_data_.set_quirks({quirks.count_first, quirks.fixed_mapping});
+  process_data_.set_quirks({quirks.count_first, quirks.fixed_mapping, quirks.first_rpdo_fixed});
   on_quirks();
 }
 
@@ -287,6 +287,8 @@ std::optional<SdoAbort> Slave::check(ObjectAddress at, std::int64_t value) {
   if (at == canopen::object::consumer_heartbeat_1.object && value >> 16 > canopen::kMaxNode)
     return SdoAbort::invalid_value;
   if (const auto abort = process_data_.check(at, value)) return abort;
+  const std::optional<ObjectAddress> mapped = process_data_.mapped_by(at, value);
+  if (mapped && is_hidden(*mapped)) return SdoAbort::no_object;
   return check_write(at, value);
 }
 

@@ -72,6 +72,8 @@ class Slave {
   virtual void on_quirks() {}
   // A PDO came too soon after the one before, for a node that is slow to take them, and is lost.
   virtual void on_overrun() {}
+  // True for objects that the node has by its profile, but not with its quirks.
+  virtual bool lacks(canopen::ObjectAddress) const { return false; }
   // True while objects are written by a PDO, not by SDO.
   bool takes_pdo() const { return takes_pdo_; }
   // Power on or node reset; objects have their initial values.

@@ -41,8 +41,9 @@ class RobotOfDevice {
 struct Quirk {
   FaultKind fault;
   canopen::NodeId node;
-  std::string key;      // that the drive needs; "": none
-  bool refused = true;  // without it; false: the robot drives, with a warning if there is a key
+  std::string key;          // that the drive needs; "": none
+  bool refused = true;      // without it; false: the robot drives, with a warning if there is a key
+  std::string homing = {};  // of the flippers; "": none
 };
 
 const std::vector<Quirk> kQuirks = {
@@ -51,6 +52,8 @@ const std::vector<Quirk> kQuirks = {
     {FaultKind::old_target, 1, "zero_target_by_sdo = true"},
     {FaultKind::halt_blocks_mode, 2, "halt_blocks_mode = true"},
     {FaultKind::count_first, 1, "mapping_count_first = true"},
+    {FaultKind::first_rpdo_fixed, 1, "command_pdo = 2"},
+    {FaultKind::first_rpdo_fixed, 5, "command_pdo = 4"},
     {FaultKind::slow_commands, 1, "command_every = 3"},
     {FaultKind::slow_commands, 3, "command_every = 3"},
     {FaultKind::slow_fault_reset, 2, "fault_reset_cycles = 5"},
@@ -63,6 +66,10 @@ const std::vector<Quirk> kQuirks = {
     {FaultKind::position_16_bits, 1, "position_bits = 16"},
     {FaultKind::position_24_bits, 1, "position_bits = 24"},
     {FaultKind::guarding_only, 1, "error_control = \"node guarding\""},
+    {FaultKind::no_current, 2, "currents = false"},
+    {FaultKind::no_current, 3, "currents = false"},
+    {FaultKind::no_voltage, 1, "battery = false"},
+    {FaultKind::home_offset_negative, 4, "home_offset_direction = -1", true, kHomeHere},
 };
 
 void inject(RobotOnBus& robot, FaultKind fault, canopen::NodeId first, canopen::NodeId last) {
@@ -116,7 +123,7 @@ Of part_of(const Quirk& quirk) {
 TEST_CASE("A drive with a quirk drives as any other once its device file names it") {
   for (const Quirk& quirk : kQuirks) {
     CAPTURE(static_cast<int>(quirk.fault), quirk.node, quirk.key);
-    const RobotOfDevice described(quirk.key, part_of(quirk));
+    const RobotOfDevice described(quirk.key, part_of(quirk), quirk.homing);
     RobotOnBus robot(described.path());
     if (part_of(quirk) == Of::tracks)
       inject(robot, quirk.fault, 1, 2);
@@ -133,7 +140,7 @@ TEST_CASE("A drive with a quirk drives as any other once its device file names i
 TEST_CASE("Without its key a drive with a quirk is refused or warned of, by its name and with the key") {
   for (const Quirk& quirk : kQuirks) {
     CAPTURE(static_cast<int>(quirk.fault), quirk.node, quirk.key);
-    const RobotOfDevice described("# nothing but standards");
+    const RobotOfDevice described("# nothing but standards", Of::all, quirk.homing);
     RobotOnBus robot(described.path());
     inject(robot, quirk.fault, quirk.node, quirk.node);
     std::string says = error_of([&] {
@@ -159,7 +166,7 @@ TEST_CASE("The keys of a device file do no harm to a drive that does not need th
     // CiA 301 forbids what this key is for: a mapping that changes while its PDO is valid
     if (quirk.fault == FaultKind::count_first) continue;
     CAPTURE(quirk.key);
-    const RobotOfDevice described(quirk.key, part_of(quirk));
+    const RobotOfDevice described(quirk.key, part_of(quirk), quirk.homing);
     RobotOnBus robot(described.path());
     robot.open();
     check_drives(robot);

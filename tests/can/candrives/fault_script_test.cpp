@@ -37,6 +37,11 @@ TEST_CASE("Faults are read from words", "[fault script]") {
   CHECK(read("track left no heartbeat watch").fault.kind == FaultKind::no_heartbeat);
   CHECK(read("all no event timer 0.5 after motion").fault.kind == FaultKind::no_event_timer);
 
+  CHECK(read("track right first rpdo fixed").fault.kind == FaultKind::first_rpdo_fixed);
+  CHECK(read("track left no current").fault.kind == FaultKind::no_current);
+  CHECK(read("node 1 no voltage for 1").fault.kind == FaultKind::no_voltage);
+  CHECK(read("flipper rear left home offset negative").fault.kind == FaultKind::home_offset_negative);
+
   fault = read("bus garbage for 1");
   CHECK(fault.fault.kind == FaultKind::garbage);
   CHECK(fault.at_once);

@@ -222,3 +222,28 @@ TEST_CASE("A drive of a robot without event timers has none in its RPDOs", "[pdo
   CHECK(robot.write(1, kRpdo1, 5, 2, 50) == refused(kRpdo1, 5, 0x06090011));
   CHECK(robot.value(1, kTpdo1, 0) == 5);
 }
+
+TEST_CASE("A drive whose first RPDO is fixed takes its mapping in the others", "[pdo]") {
+  EasyRobot robot;
+  robot.inject({FaultKind::first_rpdo_fixed, 1});
+  CHECK(robot.write(1, kRpdo1, 1, 4, 0x80000201) == done(kRpdo1, 1));  // switching it off is no mapping
+  CHECK(robot.write(1, kRpdo1Mapping, 0, 1, 0) == refused(kRpdo1Mapping, 0, 0x06040041));
+  CHECK(robot.write(1, 0x1401, 1, 4, 0x80000301) == done(0x1401, 1));
+  CHECK(robot.write(1, 0x1601, 0, 1, 0) == done(0x1601, 0));
+  CHECK(robot.write(1, 0x1601, 1, 4, 0x60400010) == done(0x1601, 1));
+}
+
+TEST_CASE("A drive without current or voltage can neither be asked for them nor map them", "[pdo]") {
+  EasyRobot robot;
+  robot.inject({FaultKind::no_current, 1});
+  CHECK(robot.write(1, 0x1801, 1, 4, 0x80000281) == done(0x1801, 1));
+  CHECK(robot.write(1, 0x1a01, 0, 1, 0) == done(0x1a01, 0));
+  CHECK(robot.write(1, 0x1a01, 1, 4, 0x60780010) == refused(0x1a01, 1, 0x06020000));
+  CHECK(robot.write(1, 0x1a01, 1, 4, 0x60790020) == done(0x1a01, 1));
+  CHECK(robot.send("601#4075600000000000") == Lines{"581#8075600000000206"});
+
+  robot.inject({FaultKind::no_voltage, 1});
+  CHECK(robot.write(1, 0x1a01, 2, 4, 0x60790020) == refused(0x1a01, 2, 0x06020000));
+  robot.inject({FaultKind::healed, 1});
+  CHECK(robot.write(1, 0x1a01, 2, 4, 0x60780010) == done(0x1a01, 2));
+}
