@@ -22,6 +22,11 @@ std::string words_of(const EdsNumber& number, NodeId node) {
   return fmt::format("{}", value_for(number, node));
 }
 
+int line_of(const EdsFile& file, canopen::ObjectAddress at) {
+  const EdsObject* object = file.find(at);
+  return object != nullptr ? object->line : 0;
+}
+
 std::string limits_of(const EdsObject& object, NodeId node) {
   if (!object.low && !object.high) return {};
   return fmt::format("  {} to {}", object.low ? words_of(*object.low, node) : "",
@@ -65,6 +70,42 @@ void check_mapped(const EdsFile& file, const canopen::Pdo& pdo, std::vector<EdsF
   }
 }
 
+// A transfer that the library can do without can be done with this drive: the object is there, and fits.
+bool is_possible(const EdsFile& file, const SdoStep& step, NodeId node) {
+  const EdsObject* object = file.find(step.what.object);
+  return object != nullptr && fault_of(step, *object, node).empty();
+}
+
+// Of the objects that a drive may lack, the library takes a refusal for a lack only where it ends or sets a watch.
+bool may_be_refused(const SdoStep& step, const canbus::RobotBus& bus, std::size_t drive) {
+  const SdoStep end = canbus::end_of_watch(bus.drives[drive].device),
+                timer = canbus::write_of_event_timer(pdos_of(bus, drive).command, 0);
+  return (step.what.object == end.what.object && step.what.value == end.what.value) ||
+         step.what.object == timer.what.object;
+}
+
+// The library's own rule (libkenaf_real/drive_watches.hpp): a drive without any watch for its master is refused, as is
+// one without the event timer that the description requires.
+void check_watches(const EdsFile& file, const canbus::RobotBus& bus, std::size_t drive,
+                   std::vector<EdsFinding>& found) {
+  const canbus::DriveOnBus& one = bus.drives[drive];
+  const SdoStep timer = canbus::write_of_event_timer(pdos_of(bus, drive).command, 0);
+  const bool has_timer = is_possible(file, timer, one.node);
+  if (bus.event_timer == true && !has_timer)
+    found.push_back({timer.what.object, line_of(file, timer.what.object),
+                     "is no event timer that can be written, which `event_timer = true` in [can] requires"});
+
+  const std::optional<SdoStep> heartbeat = canbus::begin_of_watch(bus, one.device);
+  const bool watches_commands = has_timer && bus.event_timer != false;
+  if (!heartbeat || watches_commands || is_possible(file, *heartbeat, one.node)) return;
+  found.push_back(
+      {heartbeat->what.object, line_of(file, heartbeat->what.object),
+       fmt::format("cannot be written, nor is a watch of commands possible ({}{}): nothing would stop the drive if the "
+                   "program ended, and the library refuses it{}",
+                   to_string(timer.what.object), bus.event_timer == false ? ", `event_timer = false` in [can]" : "",
+                   canbus::advice(one.device, "error_control = \"node guarding\""))});
+}
+
 }  // namespace
 
 std::string to_text(const EdsFile& file, NodeId node) {
@@ -84,7 +125,7 @@ std::vector<EdsFinding> check_eds(const EdsFile& file, const canbus::RobotBus& b
   for (const SdoStep& step : all_steps_of_drive(bus, drive, period_s)) {
     const EdsObject* object = file.find(step.what.object);
     if (object != nullptr) {
-      if (std::string words = fault_of(step, *object, node); !words.empty() && !step.optional)
+      if (std::string words = fault_of(step, *object, node); !words.empty() && !may_be_refused(step, bus, drive))
         found.push_back({step.what.object, object->line, std::move(words)});
     } else if (!step.optional) {
       const char* verb = step.kind == SdoStep::Kind::write ? "written" : "read";
@@ -97,6 +138,7 @@ std::vector<EdsFinding> check_eds(const EdsFile& file, const canbus::RobotBus& b
   if (pdos.has_effort) check_mapped(file, pdos.effort, found);
   if (pdos.has_battery) check_mapped(file, pdos.battery, found);
   check_mapped(file, pdos.command, found);
+  check_watches(file, bus, drive, found);
 
   // The mode is written more than once.
   std::vector<EdsFinding> once;

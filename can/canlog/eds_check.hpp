@@ -21,7 +21,8 @@ struct EdsFinding {
 
 // Compares the file with all that is read and written by SDO for this drive (canbus::all_steps_of_drive) and with the
 // objects in its PDOs: objects that are missing, cannot be written, read or mapped, have another size, or whose limits
-// exclude the value. Objects that the library does without are not missed. Each finding once, in the library's order.
+// exclude the value. Objects that the library does without are not missed, but of a drive's two watches for its master
+// one must be there. Each finding once, in the library's order.
 std::vector<EdsFinding> check_eds(const canopen::EdsFile& file, const canbus::RobotBus& bus, std::size_t drive,
                                   double period_s);
 

@@ -27,9 +27,12 @@ std::string section_of(const canopen::MappedObject& object) {
                      object.object.sub, kTypes[static_cast<std::size_t>(object.type)]);
 }
 
-// A data sheet that has exactly what the left track's drive needs.
-std::string fitting_eds() {
-  std::map<canopen::ObjectAddress, canopen::MappedObject> objects;
+constexpr canopen::MappedObject kHeartbeatWatch{{0x1016, 1}, canopen::ObjectType::unsigned32},
+    kEventTimer{{0x1400, 5}, canopen::ObjectType::unsigned16};
+
+// A data sheet that has exactly what the left track's drive needs, and one of the two watches.
+std::string fitting_eds(const canopen::MappedObject& watch = kHeartbeatWatch) {
+  std::map<canopen::ObjectAddress, canopen::MappedObject> objects{{watch.object, watch}};
   for (const canbus::SdoStep& step : all_steps_of_drive(kenaf_bus(), 0, 0.01)) {
     if (!step.optional) objects[step.what.object] = {step.what.object, step.what.type};
   }
@@ -41,9 +44,9 @@ std::string fitting_eds() {
   return text;
 }
 
-std::vector<std::string> found_in(const std::string& eds) {
+std::vector<std::string> found_in(const std::string& eds, const canbus::RobotBus& bus = kenaf_bus()) {
   std::vector<std::string> words;
-  for (const canlog::EdsFinding& one : canlog::check_eds(canopen::read_eds(eds), kenaf_bus(), 0, 0.01))
+  for (const canlog::EdsFinding& one : canlog::check_eds(canopen::read_eds(eds), bus, 0, 0.01))
     words.push_back(to_string(one.object) + " " + one.words);
   return words;
 }
@@ -79,6 +82,47 @@ TEST_CASE("What does not fit is named with object and purpose, once") {
              Contains("0x605a:00 is at most 5, but 6 is written (hold after a quick stop)"));
   CHECK_THAT(only(found_after("[6083sub0]", "DataType=7", "DataType=6")),
              Contains("0x6083:00 is UNSIGNED16, but has 32"));
+}
+
+TEST_CASE("A drive without any watch for its master is found, as the library refuses it") {
+  using Catch::Contains;
+  CHECK(found_in(fitting_eds(kEventTimer)).empty());
+
+  // neither: the object of the watch is none that the library reads or writes
+  const std::vector<std::string> neither = found_in(fitting_eds(canopen::object::supported_modes));
+  REQUIRE(neither.size() == 1);
+  CHECK_THAT(neither[0], Contains("0x1016:01 cannot be written, nor is a watch of commands possible (0x1400:05)") &&
+                             Contains("nothing would stop the drive") &&
+                             Contains("`error_control = \"node guarding\"` in a device file"));
+
+  // the description's own words count
+  canbus::RobotBus bus = kenaf_bus();
+  bus.event_timer = false;
+  const std::vector<std::string> unwatched = found_in(fitting_eds(kEventTimer), bus);
+  REQUIRE(unwatched.size() == 1);
+  CHECK_THAT(unwatched[0], Contains("(0x1400:05, `event_timer = false` in [can])"));
+  CHECK(found_in(fitting_eds(kHeartbeatWatch), bus).empty());
+  bus.event_timer = true;
+  const std::vector<std::string> required = found_in(fitting_eds(kHeartbeatWatch), bus);
+  REQUIRE(required.size() == 1);
+  CHECK_THAT(required[0], Contains("0x1400:05 is no event timer that can be written"));
+  CHECK(found_in(fitting_eds(kEventTimer), bus).empty());
+
+  // one that is there but cannot be written is a refusal of the drive's, not a lack, also beside the other watch
+  const std::vector<std::string> read_only = found_after("[1016sub1]", "=rw", "=ro");
+  REQUIRE(read_only.size() == 2);
+  CHECK_THAT(read_only[0], Contains("0x1016:01 is read only, but is written"));
+  CHECK_THAT(read_only[1], Contains("0x1016:01 cannot be written, nor is"));
+}
+
+TEST_CASE("A drive with node guarding has its watch by objects that must be there") {
+  canbus::RobotBus bus = kenaf_bus();
+  bus.drives[0].device.error_control = canbus::ErrorControl::node_guarding;
+  bus.event_timer = false;
+  const std::vector<std::string> found = found_in(fitting_eds(), bus);
+  REQUIRE(found.size() == 2);
+  CHECK_THAT(found[0], Catch::Contains("0x100c:00 is not in the file, but is written"));
+  CHECK_THAT(found[1], Catch::Contains("0x100d:00 is not in the file, but is written"));
 }
 
 TEST_CASE("kenaf-canlog eds prints the objects, and ends with 1 where one does not fit, with 2 where nothing is read") {
