@@ -9,9 +9,10 @@
 # Each event: the tracks stand within 0.2 s; then, by name: 1. the program is killed; 2. stopped (SIGSTOP); 3. its own thread hangs;
 # 4. the interface goes down and up; 5. the bus is off; 6. a drive falls silent; 7. a drive is in fault; 8. a drive restarts.
 # 9. The inclinometer falls silent: the robot drives on, and the program is notified. (3 is counted from up to 0.06 s after the last call.)
+# 10. Drives that have node guarding alone, neither heartbeat nor event timer: the program's requests end with it.
 set -uo pipefail
 . "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
-bin=$1
+bin=$1 robot=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../../../share/robots/kenaf.toml
 work=$(mktemp -d)
 trap 'kill -9 $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -86,6 +87,14 @@ drive_fault 8 "track left restarts" "node 1 power loss" "lost: track left (node 
 begin 9; tell inclinometer silent; said program.log "degraded: inclinometer (node 7) is silent"
 pause 0.5; kill -0 "$program" || fail "9: the program ended"
 echo "inclinometer silent                            the robot drives on, degraded"
+end 2>/dev/null
+
+sed 's/^\[can\]$/&\nevent_timer = false/; s/^\[can\.\(track\|flipper\)\]$/&\ndevice = "node-guarding"/' "$robot" >guarding.toml
+[ "$(grep -c -e '^event_timer' -e '^device = "node-guarding"' guarding.toml)" = 3 ] || fail "10: no robot with node guarding"
+for node in 1 2 3 4 5 6; do tell "node $node node guarding only"; done
+said drives.log 'received: node 6 node guarding only'
+export KENAF_ROBOT=$PWD/guarding.toml
+begin 10; tell gyro healed; kill -9 "$program"; stands "program killed, drives with node guarding alone" 'received: gyro healed'
 end 2>/dev/null
 
 exec 3>&-
