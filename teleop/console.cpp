@@ -86,7 +86,6 @@ class Console {
 
       // Input: the gamepad always, the keys of the terminal or the script in their place.
       for (const Action action : gamepad_.read(now_s())) act(action);
-      desk_.set_sticks(gamepad_.sticks());
       if (terminal_) {
         while (const auto key = terminal_->key()) {
           if (const auto action = action_of_key(*key)) act(*action);
@@ -102,6 +101,7 @@ class Console {
         }
         if (turn.finished) return 0;
       }
+      desk_.set_sticks(gamepad_.sticks());  // last: Space lets go of them
 
       // Output, each at its own rate: the wish, which is also the sign of life, and the screen.
       if (now_s() >= next_wish_s_) send_wish();
@@ -123,7 +123,10 @@ class Console {
   }
 
   const Status* newest() const { return status_ ? &*status_ : nullptr; }
-  void act(Action action) { desk_.act(action, now_s(), newest()); }
+  void act(Action action) {
+    desk_.act(action, now_s(), newest());
+    if (action == Action::stand) gamepad_.let_go();
+  }
 
   void wait() const {
     std::array<pollfd, 2> watched{{{socket_.descriptor(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}}};

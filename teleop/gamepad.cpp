@@ -65,6 +65,12 @@ std::optional<Action> GamepadState::take(const js_event& event) {
   return found == kButtons.end() ? std::nullopt : std::optional(found->second);
 }
 
+// A press is an event, so nothing that is held tells of itself again.
+void GamepadState::let_go() {
+  sticks_.deadman = false;
+  cross_.reset();
+}
+
 Gamepad::Gamepad(std::string path) : path_(std::move(path)) {}
 
 Gamepad::~Gamepad() {

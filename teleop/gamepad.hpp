@@ -27,6 +27,8 @@ class GamepadState {
  public:
   // Returns the action of a pressed button, if it has one.
   std::optional<Action> take(const js_event& event);
+  // From now on dead-man and cross count only after they were released and pressed.
+  void let_go();
   const Sticks& sticks() const { return sticks_; }
   std::optional<Action> cross() const { return cross_; }  // of the cross while it is held
 
@@ -47,6 +49,8 @@ class Gamepad {
   // Returns the actions since the last call. Without a device it searches for one, at most once a second; an unplugged
   // one leaves its sticks at rest and the dead-man released.
   std::vector<Action> read(double now_s);
+  // As GamepadState::let_go(): for whoever stands the robot by other means than the gamepad.
+  void let_go() { state_.let_go(); }
   const Sticks& sticks() const { return state_.sticks(); }
   const std::string& name() const { return name_; }  // "" if there is none
 

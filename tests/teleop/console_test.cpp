@@ -235,6 +235,30 @@ TEST_CASE("A gamepad is read by the kernel's events") {
   CHECK_FALSE(pad.cross());
 }
 
+TEST_CASE("A gamepad that was let go of while dead-man and cross are held does nothing until they are pressed anew") {
+  GamepadState pad;
+  pad.take(event(kButton, 4, 1));
+  pad.take(event(kAxis, 1, -32767));
+  pad.take(event(kAxis, 7, -32767));
+  REQUIRE(pad.sticks().deadman);
+  pad.let_go();
+  CHECK_FALSE(pad.sticks().deadman);
+  CHECK_FALSE(pad.cross());
+  // the stick moves on, and the kernel may tell everything anew: both are still held
+  pad.take(event(kAxis, 1, -30000));
+  pad.take(event(kButton | kInitial, 4, 1));
+  pad.take(event(kAxis | kInitial, 7, -32767));
+  CHECK_FALSE(pad.sticks().deadman);
+  CHECK_FALSE(pad.cross());
+  pad.take(event(kButton, 4, 0));
+  pad.take(event(kButton, 4, 1));
+  CHECK(pad.sticks().deadman);
+  CHECK(pad.sticks().forward > 0.9);  // where it is, 30000 / 32767
+  pad.take(event(kAxis, 7, 0));
+  pad.take(event(kAxis, 7, -32767));
+  CHECK(pad.cross() == Action::front_up);
+}
+
 TEST_CASE("After dropped events what was let go of is let go of, and the emergency stop is not lost") {
   GamepadState pad;
   pad.take(event(kButton, 4, 1));

@@ -11,7 +11,11 @@
 // runs faster than the wall here (speed 1), so a machine that is held up makes the robot's part slower and no limit
 // below tighter. Where the console itself is held up for longer than the silence, the robot halts, and the operator
 // presses again as he does after a cut link.
+#include <fcntl.h>
+#include <linux/joystick.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -25,6 +29,7 @@
 #include "teleop/link.hpp"
 #include "teleop/udp.hpp"
 #include "tests/support/lossy_proxy.hpp"
+#include "tests/support/patience.hpp"
 #include "tests/support/process.hpp"
 
 using namespace kenaf;
@@ -257,4 +262,52 @@ TEST_CASE("A network that is too slow moves nothing") {
   const runs::Run run = desk.recording();
   const auto commanded = run.column("cmd_track_left_mps");
   CHECK(std::all_of(commanded.begin(), commanded.end(), [](double speed) { return speed == 0; }));
+}
+
+TEST_CASE("Space stands the robot though a gamepad's dead-man is held, until it is released and pressed again") {
+  // The test is the control process and, by a pipe with a name, the gamepad.
+  const support::TemporaryFolder folder;
+  const std::string pad_path = folder.path() / "js0", script_path = folder.path() / "space.script";
+  REQUIRE(::mkfifo(pad_path.c_str(), 0600) == 0);
+  const int pad = ::open(pad_path.c_str(), O_RDWR | O_CLOEXEC);
+  const auto press = [&](bool down) {
+    const js_event event{0, static_cast<__s16>(down), JS_EVENT_BUTTON, 4};
+    REQUIRE(::write(pad, &event, sizeof event) == sizeof event);
+  };
+  const js_event ahead{0, -32767, JS_EVENT_AXIS, 1};
+  REQUIRE(::write(pad, &ahead, sizeof ahead) == sizeof ahead);
+  press(true);
+  std::ofstream(script_path) << "wait 1\npress space\nwait 600\n";
+
+  auto control = teleop::UdpSocket::bound_to(teleop::resolve_listener("127.0.0.1:0"));
+  const Process console({KENAF_BIN_DIR "/operator_console", "--control", "127.0.0.1:" + std::to_string(control.port()),
+                         "--gamepad", pad_path, "--script", script_path},
+                        folder.path() / "console.log");
+  const auto next_wish = [&] {
+    std::array<std::byte, 2048> bytes;
+    teleop::Peer from;
+    teleop::Datagram datagram = teleop::Bye{1};
+    const bool came = support::eventually([&] {
+      const auto size = control.receive(bytes, from);
+      return size && teleop::decode(std::span(bytes).first(*size), datagram) == protocol::DecodeError::none &&
+             std::holds_alternative<teleop::Wish>(datagram);
+    });
+    REQUIRE(came);
+    return std::get<teleop::Wish>(datagram);
+  };
+
+  CHECK(next_wish().deadman);
+  teleop::Wish wish = next_wish();
+  CHECK(wish.track_mmps[0] > 0);
+  while (wish.deadman) wish = next_wish();  // for the second until Space
+  for (int i = 0; i < 20; ++i) {
+    wish = next_wish();
+    CHECK_FALSE(wish.deadman);
+    CHECK(wish.track_mmps[0] == 0);
+  }
+  press(false);
+  press(true);
+  while (!wish.deadman) wish = next_wish();
+  CHECK(wish.track_mmps[0] > 0);
+  ::close(pad);
 }
