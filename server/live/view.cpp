@@ -17,6 +17,7 @@
 #include "server/live/speed_meter.hpp"
 #include "server/live/viewer.hpp"
 #include "server/live/web_server.hpp"
+#include "server/live/world_list.hpp"
 
 namespace kenaf::live {
 
@@ -31,6 +32,13 @@ Route scene_route(const Hub& hub) {
   return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
     if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
     return Reply{http::status::ok, "application/octet-stream", hub.scene};
+  };
+}
+
+Route worlds_route(std::shared_ptr<const std::string> worlds) {
+  return [worlds = std::move(worlds)](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    return Reply{http::status::ok, "application/json", worlds};
   };
 }
 
@@ -77,7 +85,12 @@ struct View::Implementation {
                      .own_name = machine_name(),
                      .assets = load_assets("index.html")}},
         server(hub.site, options) {
-    hub.site.routes = {{"/scene", scene_route(hub)}, {"/ws", viewer_route(hub)}, {"/camera", picture_route(hub)}};
+    auto worlds =
+        std::make_shared<const std::string>(worlds_message(start_command(options, server.port()), installed_worlds()));
+    hub.site.routes = {{"/scene", scene_route(hub)},
+                       {"/worlds", worlds_route(std::move(worlds))},
+                       {"/ws", viewer_route(hub)},
+                       {"/camera", picture_route(hub)}};
     hub.viewer_came = [this] {
       if (!looking) look();
     };

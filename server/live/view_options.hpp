@@ -9,10 +9,11 @@ namespace kenaf::live {
 
 struct ViewOptions {
   bool on = true;
-  std::string address = "127.0.0.1";  // an IP address
-  std::uint16_t port = 8080;          // 0: any free one
-  std::string token;                  // empty: none on loopback; otherwise one is generated and printed
-  bool asked_for = false;             // by an option: then a program that cannot serve it does not start
+  std::string address = "127.0.0.1";    // an IP address
+  std::uint16_t port = 8080;            // 0: any free one
+  std::string token;                    // empty: none on loopback; otherwise one is generated and printed
+  bool asked_for = false;               // by an option: then a program that cannot serve it does not start
+  std::string program = "kenaf-world";  // how a person starts the program that serves it
   bool operator==(const ViewOptions&) const = default;
 };
 

@@ -17,13 +17,15 @@ export function keyIsTaken(event) {
   return event.target instanceof HTMLInputElement && event.code.startsWith("Arrow");
 }
 
-// `active()`: whether keys drive now. `changed()`: after each change.
+// `active()`: whether keys, buttons and the stick drive now. `changed()`: after each change. `letGoes` counts how often all was let go of:
+// who holds something by other means (gamepad.js) has to press it anew then.
 export function watchHands(active, changed) {
-  const hands = { held: new Set(), stick: { x: 0, y: 0 }, areFull, letGo };
+  const hands = { held: new Set(), stick: { x: 0, y: 0 }, letGoes: 0, areFull, letGo, hold, steer, areActive: active };
   let pointer = null;   // the one that has the stick
 
   function areFull() { return hands.held.size > 0 || hands.stick.x !== 0 || hands.stick.y !== 0; }
   function letGo() {
+    ++hands.letGoes;
     hands.held.clear();
     pointer = null;   // the stick moves again once it is pressed again
     hands.stick.x = hands.stick.y = 0;
@@ -32,6 +34,7 @@ export function watchHands(active, changed) {
     changed();
   }
   function hold(name, down) {
+    if (down && !active()) return;
     if (down) hands.held.add(name); else hands.held.delete(name);
     document.querySelector(`[data-hold="${name}"]`)?.toggleAttribute("data-held", down);
     changed();
@@ -91,18 +94,26 @@ export function watchHands(active, changed) {
     changed();
   }
   // A pointer moves more often than the server reads: what it changes goes with the next repeated word, begin and end at once.
+  function setStick(x, y) {
+    const rested = hands.stick.x === 0 && hands.stick.y === 0;
+    hands.stick.x = x;
+    hands.stick.y = y;
+    drawStick();
+    if (rested !== (hands.stick.x === 0 && hands.stick.y === 0)) changed();
+  }
   function moveStick(event) {
     const box = stick.getBoundingClientRect();
     const x = (event.clientX - box.x) / box.width * 2 - 1, y = 1 - (event.clientY - box.y) / box.height * 2;
     const length = Math.max(1, Math.hypot(x, y));
     const dead = (v) => (Math.abs(v) < 0.12 ? 0 : v);
-    const rested = hands.stick.x === 0 && hands.stick.y === 0;
-    hands.stick.x = dead(x / length);
-    hands.stick.y = dead(y / length);
-    drawStick();
-    if (rested !== (hands.stick.x === 0 && hands.stick.y === 0)) changed();
+    setStick(dead(x / length), dead(y / length));
+  }
+  // By other means than the pointer, which goes before.
+  function steer(x, y) {
+    if (pointer === null && active()) setStick(x, y);
   }
   stick.addEventListener("pointerdown", (event) => {
+    if (!active()) return;
     stick.setPointerCapture(event.pointerId);
     pointer = event.pointerId;
     moveStick(event);

@@ -7,8 +7,8 @@ export function whoPaused({ pausedBy, you }) {
 }
 
 // `mine`: the robot, if it is yours; `lost`: the name of the one that was yours when the link was lost; `moves`: keys or stick order a
-// motion.
-export function describe({ robot, mine, holder, lost, world, isHeard, moves }) {
+// motion. `lookingBack`: what is shown was.
+export function describe({ robot, mine, holder, lost, world, isHeard, moves, lookingBack }) {
   if (!isHeard) {
     const yours = `${lost} stops by itself ${world.operatorSilence_s} s after the last word that reached it`;
     return { state: "lost", text: lost ? `No link: ${yours}` : "No link: what is shown is old" };
@@ -18,6 +18,7 @@ export function describe({ robot, mine, holder, lost, world, isHeard, moves }) {
   }
   const { name, placed } = robot.about;
   if (mine && world.paused) return { state: "paused", text: `${name} is yours; the world is paused by ${whoPaused(world)}` };
+  if (mine && lookingBack) return { state: "paused", text: `${name} stands: nothing drives while you look back` };
   if (mine && moves) return { state: "driving", text: `Driving ${name}` };
   if (mine) return { state: "held", text: `${name} is at rest: hold a key or the stick to drive` };
   if (holder) return { state: "other", text: `Another operator drives ${name}` };

@@ -2,6 +2,7 @@
 import { command, isMoving } from "./hand.js";
 import { keyIsTaken, watchHands } from "./dead_man.js";
 import { dialogIsOpen, focusStick } from "./focus.js";
+import { keep, keepHere, recall, recallHere } from "./kept.js";
 import { createQuestion } from "./question.js";
 import { describe } from "./drive_state.js";
 
@@ -15,9 +16,11 @@ export function createDriving(world, link) {
   let held = "";        // name of the robot that is yours, by the newest message
   let lost = "";        // name of the robot that was yours when the link was lost
   let wasMine = false;
-  const driving = { chosen: 0, update, placed, refused, closed, holding };
-  const hands = watchHands(() => holding() !== null && !dialogIsOpen(), speak);
+  let kept = 0;         // the robot that a reload finds again
+  const driving = { chosen: 0, update, placed, refused, closed, holding, lookingBack: () => false, live() {} };   // the last two: of past.js
+  const hands = watchHands(() => holding() !== null && !dialogIsOpen() && !driving.lookingBack(), speak);
   driving.held = hands.held;
+  driving.hands = hands;
   driving.letGoOfKeys = hands.letGo;
   driving.ask = createQuestion(hands.letGo);
 
@@ -47,6 +50,7 @@ export function createDriving(world, link) {
   function take() {
     if (!chosen()) return;
     leaving = 0;
+    driving.live();
     link.send({ type: "take", robot: driving.chosen });
   }
   function leave(word, robot) {
@@ -62,6 +66,7 @@ export function createDriving(world, link) {
   function place() {
     if (placing || !link.open) return;
     placing = true;
+    driving.live();
     letGo();
     link.send({ type: "place" });
   }
@@ -91,7 +96,7 @@ export function createDriving(world, link) {
       if (mine) lost = "";
     }
     const moves = mine !== null && isMoving(message(mine));
-    const { state, text } = describe({ robot, mine, holder, lost, world, isHeard: link.isHeard(), moves });
+    const { state, text } = describe({ robot, mine, holder, lost, world, isHeard: link.isHeard(), moves, lookingBack: driving.lookingBack() });
     const line = by("drive-state");
     if (line.textContent !== text) line.textContent = text;
     line.dataset.state = state;
@@ -107,6 +112,12 @@ export function createDriving(world, link) {
     by("pace-value").textContent = robot ? `${(pace() * robot.about.max_speed).toFixed(2)} m/s` : "";
   }
 
+  // The one that this window watched before it was loaded anew. Another server gives other robots the same numbers.
+  function keptRobot() {
+    const before = recallHere("robot");
+    return before?.server === world.server && world.robots.has(before.id) ? before.id : null;
+  }
+
   // The list follows the robots; the choice stays while its robot does.
   function update() {
     if (leaving && world.robots.get(leaving)?.now?.holder !== world.you) leaving = 0;
@@ -119,7 +130,8 @@ export function createDriving(world, link) {
       driving.chosen = coming;
       coming = 0;
     }
-    if (!chosen()) driving.chosen = world.robots.keys().next().value ?? 0;
+    if (!chosen()) driving.chosen = keptRobot() ?? world.robots.keys().next().value ?? 0;
+    if (chosen() && kept !== driving.chosen) keepHere("robot", { server: world.server, id: kept = driving.chosen });
     select.disabled = world.robots.size === 0;
     if (select.value !== `${driving.chosen}`) select.value = `${driving.chosen}`;
     show();
@@ -135,7 +147,16 @@ export function createDriving(world, link) {
   by("let-go").addEventListener("click", letGo);
   by("place").addEventListener("click", place);
   by("remove").addEventListener("click", remove);
-  by("pace").addEventListener("input", show);
+  if (recall("pace")) by("pace").value = recall("pace");
+  by("pace").addEventListener("input", () => {
+    keep("pace", Number(by("pace").value));
+    show();
+  });
+  // In tenths of the fastest.
+  driving.changePace = (steps) => {
+    by("pace").value = Number(by("pace").value) + 10 * steps;
+    by("pace").dispatchEvent(new Event("input"));
+  };
   addEventListener("keydown", (event) => {
     if (event.repeat || keyIsTaken(event)) return;
     if (event.code === "KeyT") take();

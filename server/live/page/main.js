@@ -2,22 +2,24 @@
 import { connect } from "./connection.js";
 import { createCameraHand } from "./camera_hand.js";
 import { createDriving } from "./driving.js";
+import { createGamepad } from "./gamepad.js";
 import { createHelp } from "./help.js";
-import { createInstruments } from "./instruments.js";
 import { createLinkHealth } from "./link_health.js";
+import { createPanels } from "./panels.js";
 import { createPictures } from "./pictures.js";
-import { createPosture } from "./posture.js";
 import { createTimeControls } from "./time_controls.js";
-import { createTimeline } from "./timeline.js";
 import { createWorld, takeHello, takeInventory, takeState } from "./world.js";
+import { createWorlds } from "./worlds.js";
 
 const world = createWorld();
+let view = null;   // of the world in 3D
 const chosen = () => world.robots.get(driving.chosen) ?? null;
 
 const link = connect({
   open() {},
   closed() {
     world.you = 0;
+    panels.interrupt();
     driving.closed();
     pictures.update();
   },
@@ -38,10 +40,7 @@ const link = connect({
     cameraHand.update();
     pictures.update();
     timeControls.update();
-    instruments.update(chosen());
-    posture.update(chosen());
-    timeline.update(world.time_s, chosen());
-    view?.update();
+    panels.update();
   },
   placed(message) { driving.placed(message.robot); },
   refused(message) {
@@ -52,23 +51,23 @@ const link = connect({
 const driving = createDriving(world, link);
 const timeControls = createTimeControls(world, link, driving.ask);
 createHelp(driving.letGoOfKeys);
-const instruments = createInstruments();
-const posture = createPosture();
-const timeline = createTimeline();
-const pictures = createPictures(world, link, chosen);
+const panels = createPanels({ world, driving, view: () => view, jpeg: (camera) => pictures.jpeg(camera), complain: (words) => health.refused(words) });
+const pictures = createPictures(world, link, chosen, panels.bigView);
 const cameraHand = createCameraHand(link, driving);
 const health = createLinkHealth(world, link, driving.holding, pictures.oldest_ms);
+createWorlds(world, driving.letGoOfKeys, health.refused);
+createGamepad(driving.hands, driving.changePace, health.refused);
 
 // Driving and figures work without it. Where a browser has no WebGL the cameras take its place. Pictures wait for it: their streams never
 // end, and those of a few windows are all the connections that a browser has to one server.
-let view = null;
 function showCamerasInstead() {
   view = null;
+  panels.bigView.restore();
   document.body.dataset.view = "cameras";
   document.getElementById("view").replaceWith(document.getElementById("pictures"));
 }
 import("./view_3d.js").then(({ createView }) => {
-  view = createView(world, chosen, health.refused, showCamerasInstead);
+  view = createView(panels.seen, panels.chosen, health.refused, showCamerasInstead);
   view.syncObjects();
   return view.shown;
 }).catch((error) => {

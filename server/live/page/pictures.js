@@ -7,7 +7,8 @@ const AGAIN_MS = 1000;     // after a stream broke
 const OLD_MS = 500;        // while time runs: something is too slow
 const KEPT = 200;          // frames whose time is known
 
-export function createPictures(world, link, chosen) {
+// `bigView`: of big_view.js, which may have one of the pictures.
+export function createPictures(world, link, chosen, bigView) {
   const section = document.getElementById("pictures");
   let started = false, shown = "", figures = [];
 
@@ -24,7 +25,8 @@ export function createPictures(world, link, chosen) {
   }
 
   function show(figure, part) {
-    const url = URL.createObjectURL(new Blob([part.jpeg], { type: "image/jpeg" }));
+    figure.jpeg = new Blob([part.jpeg], { type: "image/jpeg" });
+    const url = URL.createObjectURL(figure.jpeg);
     const { picture } = figure, before = picture.src;
     picture.src = url;
     if (before) URL.revokeObjectURL(before);
@@ -42,6 +44,7 @@ export function createPictures(world, link, chosen) {
   }
 
   function clear(words) {
+    bigView.restore();
     for (const { ended, picture } of figures) {
       ended.abort();
       if (picture.src) URL.revokeObjectURL(picture.src);
@@ -66,12 +69,18 @@ export function createPictures(world, link, chosen) {
       caption.append(name, " ", age);
       picture.alt = `Picture of the camera ${camera.name}`;
       picture.dataset.stream = `/camera/${encodeURIComponent(robot.view)}/${encodeURIComponent(camera.name)}.mjpg`;
-      frame.append(picture, caption);
+      const enlarge = document.createElement("button");
+      enlarge.type = "button";
+      enlarge.className = "picture";
+      enlarge.append(picture);
+      frame.dataset.camera = camera.name;
+      frame.append(enlarge, caption);
       section.append(frame);
-      const figure = { picture, age, ended: new AbortController(), seen: new Map(), seen_ms: null };
+      const figure = { camera: camera.name, picture, jpeg: null, age, ended: new AbortController(), seen: new Map(), seen_ms: null };
       read(figure);
       return figure;
     });
+    bigView.built([...section.children]);
   }
 
   const ages_ms = () => figures.filter((figure) => figure.seen_ms !== null).map((figure) => performance.now() - figure.seen_ms);
@@ -101,6 +110,8 @@ export function createPictures(world, link, chosen) {
   update();
   return {
     update,
+    // The newest picture of that camera, a Blob; null: it has sent none yet.
+    jpeg: (camera) => figures.find((figure) => figure.camera === camera)?.jpeg ?? null,
     oldest_ms: () => Math.max(0, ...ages_ms()),
     start() {
       started = true;

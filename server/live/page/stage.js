@@ -2,12 +2,10 @@
 // The objects in the world are put there by others (view_3d.js, playback_view.js).
 import * as THREE from "/three/build/three.module.js";
 import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
+import { createPictureQuality } from "./picture_quality.js";
 import { colour, fetchScene, makeScene } from "./scene.js";
 
 const MODES = ["follow", "behind", "free"];
-// A picture that takes so long is made simpler from then on: driving goes on by the same thread, and nobody drives well by
-// pictures that come late.
-const SLOW_MS = 40;
 const STILL_MS = 300;
 const QUALITIES = [{ shadows: true, ratio: 2 }, { shadows: false, ratio: 1 }, { shadows: false, ratio: 0.5 }, { shadows: false, ratio: 0.25 }];
 
@@ -45,7 +43,8 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
   sun.shadow.bias = -0.001;
   scene.add(sky, sun, sun.target);
 
-  let mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0, sharp = true;
+  const quality = createPictureQuality(QUALITIES.length);
+  let mode = "follow", dirty = true, drawn_ms = 0, sharp = true;
   const at = new THREE.Vector3();
 
   let bytes = null, shows = 0, fixed = new THREE.Group();   // what never moves
@@ -89,25 +88,28 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
       drawn_ms = performance.now();
     }
     // at most a third of the time
-    if (!dirty || now_ms < drawn_ms + 2 * pictureTook_ms) return;
+    if (!dirty || now_ms < drawn_ms + 2 * quality.mean_ms) return;
     dirty = false;
-    fit(QUALITIES[quality].ratio);
-    sharp = QUALITIES[quality].ratio >= devicePixelRatio;
+    fit(QUALITIES[quality.level].ratio);
+    sharp = QUALITIES[quality.level].ratio >= devicePixelRatio;
     controls.update();
     const began = performance.now();
     renderer.render(scene, camera);
     renderer.getContext().finish();
     drawn_ms = performance.now();
-    if (++drawn <= 2) return;   // the first ones compile shaders
-    pictureTook_ms += 0.3 * (drawn_ms - began - pictureTook_ms);
-    if (pictureTook_ms < SLOW_MS || quality + 1 === QUALITIES.length) return;
-    sun.castShadow = renderer.shadowMap.enabled = QUALITIES[++quality].shadows;
-    pictureTook_ms = 0;
+    if (quality.took(drawn_ms - began, drawn_ms)) sun.castShadow = renderer.shadowMap.enabled = QUALITIES[quality.level].shadows;
   }
 
   return {
     scene,
     redraw() { dirty = true; },
+    // What it shows now as PNG, drawn in full; a promise of a Blob.
+    picture() {
+      fit(QUALITIES[0].ratio);
+      renderer.render(scene, camera);   // just before it is read: afterwards a browser may have cleared it
+      dirty = true;
+      return new Promise((done) => canvas.toBlob(done, "image/png"));
+    },
     // Shows that world, and from now on none before it; `path` is where the server has its bytes.
     show(path) {
       const number = ++shows, newest = () => number === shows;

@@ -56,5 +56,5 @@ export function createView(world, chosen, complain, gone) {
   }
 
   stage.start();
-  return { syncObjects, update, shown: stage.show("/scene") };
+  return { syncObjects, update, picture: stage.picture, shown: stage.show("/scene") };
 }

@@ -1,11 +1,12 @@
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
 export function createWorld() {
-  return { you: 0, name: "", operatorSilence_s: 0.5, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
+  return { you: 0, server: 0, name: "", operatorSilence_s: 0.5, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
            robots: new Map(), boxes: [] };
 }
 
 export function takeHello(world, message) {
   world.you = message.you;
+  world.server = message.server;
   world.name = message.world;
   world.pictures = message.pictures;
   world.operatorSilence_s = message.operator_silence;

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace kenaf::live {
 
@@ -134,6 +135,12 @@ void Browser::open(const std::string& url) {
   call("Page.navigate", {{"url", url}});
 }
 
+void Browser::download_to(const std::filesystem::path& folder) {
+  const std::string page = std::exchange(session_, {});  // it is the browser that is told
+  call("Browser.setDownloadBehavior", {{"behavior", "allow"}, {"downloadPath", folder.string()}});
+  session_ = page;
+}
+
 void Browser::resize(int width, int height, bool phone) {
   call("Emulation.setDeviceMetricsOverride",
        {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", phone}});
@@ -158,6 +165,14 @@ void Browser::key(std::string_view code, bool down, std::string_view key) {
 void Browser::mouse(const std::string& what, double x, double y, int clicks) {
   call("Input.dispatchMouseEvent",
        {{"type", what}, {"x", x}, {"y", y}, {"button", "left"}, {"buttons", 1}, {"clickCount", clicks}});
+}
+
+void Browser::click(const std::string& selector) {
+  const json at = evaluate("(() => { const box = document.querySelector(" + json(selector).dump() +
+                           ").getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()");
+  mouse("mouseMoved", at[0], at[1]);
+  mouse("mousePressed", at[0], at[1]);
+  mouse("mouseReleased", at[0], at[1]);
 }
 
 json Browser::evaluate(const std::string& expression) {

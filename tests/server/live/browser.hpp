@@ -30,6 +30,8 @@ class Browser {
   Browser& operator=(const Browser&) = delete;
 
   void open(const std::string& url);
+  // Files that the page gives the person come into this folder, without a question.
+  void download_to(const std::filesystem::path& folder);
   void resize(int width, int height, bool phone = false);
   void set_dark(bool dark);
   // `code`: a KeyboardEvent.code, "KeyW"; `key`: what it types, if that matters. Enter and Space do what they do.
@@ -37,6 +39,8 @@ class Browser {
   // "mousePressed", "mouseMoved" or "mouseReleased" of the left button, which is down meanwhile.
   // `clicks`: 2 for the second press of a double click.
   void mouse(const std::string& what, double x, double y, int clicks = 1);
+  // Presses and releases the left button in the middle of the element, which is on the screen.
+  void click(const std::string& selector);
   // What the expression is worth; a promise is waited for. Throws where it throws.
   nlohmann::json evaluate(const std::string& expression);
   // Until the expression is true; the page may load itself anew meanwhile.

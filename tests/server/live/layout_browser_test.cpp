@@ -69,6 +69,37 @@ TEST_CASE("In a browser: nothing covers anything, all text is readable and the h
   CHECK(desk.browser.complaints().empty());
 }
 
+TEST_CASE("In a browser: so it is while one looks back, with more plots, with a camera large, and full screen") {
+  Desk desk;
+  desk.place();
+  desk.browser.wait_for(kHasPictures);
+  desk.browser.wait_for("parseFloat(document.getElementById('time').textContent) > 1.5");
+  const auto tap = [&](std::string_view code) {
+    desk.browser.key(code, true);
+    desk.browser.key(code, false);
+  };
+  desk.browser.evaluate(
+      "[...document.querySelectorAll('button.reading')].filter((each) => ['Angles', "
+      "'Place'].includes(each.textContent))"
+      ".forEach((each) => each.click())");
+  tap("Comma");
+  desk.state_is("paused");
+  check_all_sizes(desk, "past");
+  tap("End");
+  tap("KeyZ");
+  check_all_sizes(desk, "camera-large");
+  tap("KeyX");
+  check_all_sizes(desk, "full-screen");
+  tap("Escape");
+  desk.browser.click("#world");
+  desk.browser.wait_for("document.getElementById('worlds').open");
+  load_checks(desk.browser);
+  CHECK(desk.browser.evaluate("pale()") == nlohmann::json::array());
+  CHECK(desk.browser.evaluate("nameless()") == nlohmann::json::array());
+  desk.browser.screenshot(desk.pictures / "worlds.png");
+  CHECK(desk.browser.complaints().empty());
+}
+
 TEST_CASE("In a browser without WebGL the cameras take the place of the 3D view") {
   Desk desk({"--disable-3d-apis"});
   desk.place();
@@ -83,6 +114,9 @@ TEST_CASE("In a browser without WebGL the cameras take the place of the 3D view"
   desk.browser.key("KeyW", false);
   desk.robot_with(stands);
   check_all_sizes(desk, "cameras");  // last: a page that draws for longer than 10 s lets its robot go
+  desk.browser.key("KeyZ", true);
+  desk.browser.key("KeyZ", false);
+  check_all_sizes(desk, "cameras-large");
 }
 
 }  // namespace kenaf::live

@@ -1,15 +1,25 @@
 // Checks of what a page shows, evaluated in it: overlaps() and pale() list what is wrong, in words.
 //
-// overlaps(): elements with text, controls and pictures that cover each other, leave their section or the page, or are cut off.
+// overlaps(): elements with text, controls and pictures that cover each other, leave their section or the page, or are cut off. Of what is
+// in a list that scrolls the part that shows counts.
 // pale(): text whose contrast with what is behind it is below 4.5 : 1 (WCAG 2.2, 1.4.3, with its formula of relative luminance).
 // nameless(): controls without a name. small(): those smaller than 24 x 24 CSS pixels (2.5.8).
 (() => {
   const seen = (e) => e.checkVisibility({ visibilityProperty: true, opacityProperty: true }) && e.getClientRects().length > 0;
-  const box = (e) => e.getBoundingClientRect();
+  const box = (e) => {
+    let { left, top, right, bottom } = e.getBoundingClientRect();
+    for (let at = e.parentElement; at && !at.matches("section, header, main"); at = at.parentElement) {
+      if (!/auto|scroll/.test(getComputedStyle(at).overflowY)) continue;
+      const list = at.getBoundingClientRect();
+      [left, top, right, bottom] = [Math.max(left, list.left), Math.max(top, list.top), Math.min(right, list.right), Math.min(bottom, list.bottom)];
+    }
+    return { left, top, right, bottom, width: right - left, height: bottom - top };
+  };
   const name = (e) => e.id ? `#${e.id}` : `${e.tagName.toLowerCase()} "${e.textContent.trim().slice(0, 20)}"`;
   const parts = () => [...document.querySelectorAll("header *, main *")]
     .filter((e) => seen(e) && !e.closest("#alarms, option"))
-    .filter((e) => e.matches("button, select, input, output, img, svg, #stick, dt, dd, p, h1, #chart, label > span"));
+    .filter((e) => e.matches("button, select, input, output, img, svg, #stick, dt, dd, p, h1, .plot canvas, #time-axis, label > span"))
+    .filter((e) => { const { width, height } = box(e); return width > 0 && height > 0; });
   window.overlaps = () => {
     const found = [], shown = parts();
     for (let i = 0; i < shown.length; ++i) for (let k = i + 1; k < shown.length; ++k) {
@@ -45,5 +55,5 @@
     }).filter(Boolean);
   const controls = () => [...document.querySelectorAll("button, select, input, [tabindex]")].filter(seen);
   window.nameless = () => controls().filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).map(name);
-  window.small = () => controls().filter((e) => !e.matches("input") && (box(e).width < 24 || box(e).height < 24)).map(name);
+  window.small = () => controls().filter((e) => !e.matches("input") && (e.getBoundingClientRect().width < 24 || e.getBoundingClientRect().height < 24)).map(name);
 })()

@@ -1,0 +1,81 @@
+// The plots that a person chose, one under the other with one time axis. A press on them looks back to that time.
+import { keep, recall } from "./kept.js";
+import { createPlot, paint, timeAt, xOf } from "./plot.js";
+import { SIGNALS, USUAL } from "./signals.js";
+
+const DRAW_MS = 100;
+const by = (id) => document.getElementById(id);
+
+// `chosen()`: the robot's id. `changed(keys)`: which signals have a plot.
+export function createPlots(history, past, timeWindow, chosen, changed) {
+  const list = by("plots"), axis = by("time-axis"), kept = recall("plots");
+  let plots = [], hover_s = null, drawn_ms = -Infinity;
+
+  function store() {
+    const keys = plots.map(({ key }) => key);
+    keep("plots", keys);
+    by("no-plots").hidden = keys.length > 0;
+    changed(keys);
+    draw();
+  }
+  function remove(key) {
+    plots.find((plot) => plot.key === key)?.root.remove();
+    plots = plots.filter((plot) => plot.key !== key);
+    store();
+  }
+  function add(key) {
+    const plot = createPlot(key, () => remove(key)), { canvas } = plot;
+    const at = (event) => timeAt(event.clientX - canvas.getBoundingClientRect().x, timeWindow.range(), canvas.clientWidth);
+    canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      canvas.setPointerCapture(event.pointerId);
+      past.lookAt(at(event));
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      hover_s = at(event);
+      if (canvas.hasPointerCapture(event.pointerId)) past.lookAt(hover_s);
+      draw();
+    });
+    canvas.addEventListener("pointerleave", () => { hover_s = null; draw(); });
+    plots.push(plot);
+    list.append(plot.root);
+  }
+
+  function drawAxis(range) {
+    paint(axis, (pen, width, height, colour) => {
+      const wanted = timeWindow.span_s() / Math.max(2, width / 80), power = 10 ** Math.floor(Math.log10(wanted));
+      const step = [1, 2, 5, 10].map((factor) => factor * power).find((s) => s >= wanted);
+      pen.fillStyle = colour("--soft");
+      pen.textBaseline = "middle";
+      pen.textAlign = "center";
+      for (let t = Math.ceil(range.from_s / step) * step; t <= range.to_s; t += step) {
+        const text = `${Number(t.toFixed(3))} s`, half = pen.measureText(text).width / 2, x = xOf(t, range, width);
+        if (t >= 0 && x + half <= width) pen.fillText(text, x, height / 2);
+      }
+    });
+  }
+
+  function draw() {
+    drawn_ms = performance.now();
+    const range = timeWindow.range(), moments = history.between(range.from_s - timeWindow.span_s() / 100, range.to_s);
+    const cursor_s = hover_s ?? (past.isBack() ? past.shown_s() : null);
+    for (const plot of plots) plot.draw(moments, chosen(), range, cursor_s, hover_s ?? past.shown_s());
+    drawAxis(range);
+  }
+
+  for (const key of Array.isArray(kept) ? new Set(kept) : USUAL) if (Object.hasOwn(SIGNALS, key)) add(key);
+  store();
+  new ResizeObserver(draw).observe(list);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  return {
+    draw,
+    // A second time takes the plot away.
+    toggle(key) {
+      if (plots.some((plot) => plot.key === key)) return remove(key);
+      add(key);
+      plots[plots.length - 1].root.scrollIntoView({ block: "nearest" });
+      store();
+    },
+    update() { if (!document.hidden && performance.now() >= drawn_ms + DRAW_MS) draw(); },
+  };
+}
