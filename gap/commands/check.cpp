@@ -1,4 +1,4 @@
-// kenaf-gap check: checks that a dataset is plausible.
+// kenaf-gap check: checks that a dataset, or a run file by itself, is plausible.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "gap/commands/commands.hpp"
 #include "gap/logs/copies.hpp"
@@ -23,10 +25,26 @@ void print(const std::vector<logs::Finding>& findings) {
                 logs::in_words(finding).c_str());
 }
 
-// Checks a dataset with one run in memory at a time. Throws if something is refused.
-void check(const std::filesystem::path& folder, const logs::RefusedRuns& refused_runs) {
-  const runs::Dataset dataset = runs::read_dataset(folder);
-  const physics::RobotDescription robot = physics::load_robot(runs::resolve_beside(folder, dataset.robot, ".toml"));
+bool is_run_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && path.extension() != ".toml";
+}
+
+// Checks a dataset with one run in memory at a time, or one run of `robot`. Throws if something is refused.
+void check(const std::filesystem::path& path, const std::string& robot_of_file, const logs::RefusedRuns& refused_runs) {
+  const bool is_file = is_run_file(path);
+  if (!is_file && !robot_of_file.empty())
+    throw std::invalid_argument(path.string() + ": a dataset names its robot; --robot is for a run file");
+  const std::filesystem::path folder = is_file ? path.parent_path() : path;
+  runs::Dataset dataset;
+  if (is_file) {
+    dataset.robot = robot_of_file.empty() ? "kenaf" : robot_of_file;
+    dataset.runs.push_back({path.filename().string(), "", ""});
+  } else {
+    dataset = runs::read_dataset(folder);
+  }
+  const physics::RobotDescription robot =
+      physics::load_robot(is_file ? dataset.robot : runs::resolve_beside(folder, dataset.robot, ".toml"));
 
   // Findings are printed and counted as they come.
   std::vector<std::vector<std::string>> columns;
@@ -64,7 +82,7 @@ void check(const std::filesystem::path& folder, const logs::RefusedRuns& refused
   const std::string counts =
       fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);
   if (refused_runs.too_many(runs_refused, dataset.runs.size()))
-    throw std::runtime_error(fmt::format("{}: {}", folder.string(), counts));
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), counts));
   std::printf("%s\n", counts.c_str());
   if (runs_refused > 0)
     std::printf("a diagnosis leaves %zu of %zu runs out; with --strict they refuse the dataset\n", runs_refused,
@@ -74,16 +92,17 @@ void check(const std::filesystem::path& folder, const logs::RefusedRuns& refused
 }  // namespace
 
 void add_check_command(CLI::App& program) {
-  const auto folder = std::make_shared<std::string>();
+  const auto path = std::make_shared<std::string>(), robot = std::make_shared<std::string>();
   CLI::App* command =
-      program.add_subcommand("check", "checks a dataset for wrong units, signs, clocks and dead sensors");
-  command->add_option("DATASET", *folder, "the dataset, a folder; required")->type_name("");
+      program.add_subcommand("check", "checks a dataset or a run for wrong units, signs, clocks and dead sensors");
+  command->add_option("DATASET", *path, "the dataset, a folder, or a run, a CSV file; required")->type_name("");
+  command->add_option("--robot", *robot, "the robot of a run: a shipped name or a TOML file [kenaf]");
   const auto refused_runs = std::make_shared<logs::RefusedRuns>();
   command->add_flag("--strict", refused_runs->strict,
                     "one refused run refuses the dataset; otherwise more than a tenth of the runs do");
-  command->callback([folder, refused_runs] {
-    if (folder->empty()) throw CLI::RequiredError("DATASET");
-    check(*folder, *refused_runs);
+  command->callback([path, robot, refused_runs] {
+    if (path->empty()) throw CLI::RequiredError("DATASET");
+    check(*path, *robot, *refused_runs);
   });
 }
 

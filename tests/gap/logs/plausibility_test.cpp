@@ -382,6 +382,14 @@ TEST_CASE("The command check ends with 2 where something is refused, and with 0 
   auto outcome = test::kenaf_gap(folder, "check data");
   CHECK(outcome.status == 0);
   CHECK(outcome.out == "1 runs; findings: 0 refused, 0 warned of\n");
+  // a run by itself, too
+  outcome = test::kenaf_gap(folder, "check data/run-000.csv --robot kenaf");
+  CHECK(outcome.status == 0);
+  CHECK(outcome.out == "1 runs; findings: 0 refused, 0 warned of\n");
+  outcome = test::kenaf_gap(folder, "check data --robot kenaf");
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.error, Catch::Contains("data: a dataset names its robot; --robot is for a run file"));
+  CHECK(test::kenaf_gap(folder, "check data/missing.csv").status == 2);
   runs::Run run = scaled(runs::read_run(folder / "data/run-000.csv"), kPlace, 1000);
   runs::RunWriter writer(folder / "data/run-000.csv", run.columns);
   for (std::size_t i = 0; i < run.row_count(); ++i) {
@@ -394,5 +402,9 @@ TEST_CASE("The command check ends with 2 where something is refused, and with 0 
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.out, Catch::StartsWith("run-000.csv: x_m: looks like millimetres"));
   CHECK_THAT(outcome.error, Catch::Contains("data: 1 runs; findings: 1 refused"));
+  outcome = test::kenaf_gap(folder, "check data/run-000.csv");
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.out, Catch::StartsWith("run-000.csv: x_m: looks like millimetres"));
+  CHECK_THAT(outcome.error, Catch::Contains("run-000.csv: 1 runs; findings: 1 refused"));
   CHECK(test::kenaf_gap(folder, "check").status == 2);
 }

@@ -1,6 +1,7 @@
 // The page's pictures and choices, in a real browser: a camera's picture takes the world's place, full screen, the list
 // of worlds, a gamepad, what a reload keeps, and a picture that is drawn better again.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 
 #include "tests/server/live/browser_desk.hpp"

@@ -1,11 +1,14 @@
 // Looking back, in a real browser: what is shown was, nothing drives meanwhile, the shown time becomes a run file, and
 // any reading a plot.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "formats/runs/run_file.hpp"
 #include "gap/commands/commands.hpp"
@@ -91,13 +94,11 @@ TEST_CASE("In a browser: one looks back while the world goes on, nothing drives 
   desk.browser.evaluate("sent.length = 0");
   desk.browser.key("KeyW", true);
   desk.browser.key("Digit2", true);
-  desk.browser.evaluate(
-      "document.querySelector('[data-hold=\"front-up\"]').dispatchEvent(new PointerEvent('pointerdown', { pointerId: 1 "
-      "})), 0");
-  desk.browser.evaluate(
-      "(() => { const stick = document.getElementById('stick'), box = stick.getBoundingClientRect();"
-      "  stick.dispatchEvent(new PointerEvent('pointerdown', { pointerId: 1, buttons: 1, clientX: box.x + 10, clientY: "
-      "box.y })); })()");
+  desk.browser.click("[data-hold='front-up']");
+  const json stick = desk.browser.evaluate(
+      "(() => { const box = document.getElementById('stick').getBoundingClientRect();"
+      "  return [box.x + box.width / 2, box.y + 0.1 * box.height]; })()");
+  desk.browser.mouse("mousePressed", stick[0], stick[1]);
   desk.browser.wait_for("sent.filter((word) => word.type === 'drive').length > 5");
   const auto moves =
       "sent.some((word) => word.type === 'drive' && (word.left || word.right || word.flipper_angle || "
@@ -109,12 +110,14 @@ TEST_CASE("In a browser: one looks back while the world goes on, nothing drives 
                               "  return sent.slice(before).filter((word) => word.type === 'drive').length; })()") == 1);
   CHECK(desk.browser.evaluate("document.body.hasAttribute('data-past')") == true);
 
-  // back to now: what is still down has to be pressed anew
+  // back to now: what is still down has to be pressed anew, the stick too
   strike(desk.browser, "Escape");
   desk.state_is("held");
   CHECK(desk.browser.evaluate("document.getElementById('past-banner').hidden") == true);
   desk.browser.wait_for(std::string(kShownX) + " > 0.15");
+  desk.browser.mouse("mouseMoved", stick[0].get<double>() + 5, stick[1]);
   CHECK(desk.browser.evaluate(moves) == false);
+  desk.browser.mouse("mouseReleased", stick[0], stick[1]);
   desk.browser.key("KeyW", false);
   desk.browser.key("Digit2", false);
   desk.browser.key("KeyW", true);
@@ -228,9 +231,10 @@ TEST_CASE("In a browser: the shown time is saved as a run that kenaf-gap takes")
   CHECK(runs::any_measured(run.column("cmd_flipper_fl_rad")));
   CHECK(std::abs(run.column("flipper_fl_rad").back()) < 0.06);
 
+  CHECK_NOTHROW(kenaf_gap({"check", file.string()}));
   const std::string dataset = files.path() / "dataset";
-  CHECK_NOTHROW(kenaf_gap({"dataset", file, "--manoeuvre", "by-hand", "--robot", "kenaf", "--world", "step-200",
-                           "--source", "sim", "--out", dataset}));
+  CHECK_NOTHROW(kenaf_gap({"dataset", file.string(), "--manoeuvre", "by-hand", "--robot", "kenaf", "--world",
+                           "step-200", "--source", "sim", "--out", dataset}));
   CHECK_NOTHROW(kenaf_gap({"check", dataset, "--strict"}));
 }
 

@@ -45,7 +45,8 @@ TEST_CASE("The server lists the installed worlds, to who has the token") {
   const auto list = nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
   CHECK(list["command"] == "kenaf-world --world WORLD --view 127.0.0.1:" + std::to_string(world.port()));
   const auto& worlds = list["worlds"];
-  const auto stairs = std::ranges::find_if(worlds, [](const auto& each) { return each["name"] == "stairs"; });
+  const auto stairs =
+      std::find_if(worlds.begin(), worlds.end(), [](const auto& each) { return each["name"] == "stairs"; });
   REQUIRE(stairs != worlds.end());
   CHECK((*stairs)["words"] ==
         "12 steps of 75 mm rise and 175 mm run from x = 1 m on, 2 m wide, then a landing of 2 m.");
