@@ -55,7 +55,9 @@ export function createBigView(past, letGo) {
     enlarge(figure);
   }
   // The world, the first camera, the next one, ..., the world.
-  const next = () => choose(figures[large ? figures.indexOf(large) + 1 : 0] ?? null);
+  function next() {
+    if (figures.length) choose(figures[large ? figures.indexOf(large) + 1 : 0] ?? null);
+  }
   back.addEventListener("click", () => choose(null));
 
   function setFull(on) {
@@ -88,8 +90,9 @@ export function createBigView(past, letGo) {
   }, { capture: true });
 
   return {
-    // Before the cameras' pictures are taken away, or take the world's place; after they are there again.
+    // Before the cameras' pictures take the world's place.
     restore,
+    // These are the cameras' figures from now on; called before they are taken away, too.
     built(made) {
       figures = made;
       for (const figure of figures) figure.querySelector("button").addEventListener("click", () => choose(figure === large ? null : figure));

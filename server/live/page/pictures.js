@@ -44,7 +44,7 @@ export function createPictures(world, link, chosen, bigView) {
   }
 
   function clear(words) {
-    bigView.restore();
+    bigView.built([]);
     for (const { ended, picture } of figures) {
       ended.abort();
       if (picture.src) URL.revokeObjectURL(picture.src);

@@ -92,6 +92,8 @@ TEST_CASE("In a browser: the large camera is large again after a reload, and whe
   };
   hide(true);
   CHECK(desk.browser.evaluate("document.getElementById('canvas').parentElement.id") == "view");
+  tap(desk.browser, "KeyZ");  // there is no picture to enlarge
+  CHECK(desk.browser.evaluate(kLarge) == "3D");
   hide(false);
   desk.browser.wait_for(std::string(kLarge) + " === 'Camera'");
   desk.browser.evaluate("window.was_open = true, setTimeout(() => location.reload(), 50), 0");
