@@ -16,7 +16,8 @@ export function createBigView(past, letGo) {
   small.id = "small-world";
   back.type = "button";
   back.className = "picture";
-  back.ariaLabel = "Enlarge the world in 3D";
+  back.append(document.createElement("span"));
+  back.firstChild.textContent = "Enlarge the world in 3D";
   caption.textContent = "3D";
   small.append(back, caption);
 
@@ -26,7 +27,7 @@ export function createBigView(past, letGo) {
     for (const figure of figures) {
       figure.toggleAttribute("data-large", figure === large);
       const words = figure === large ? "Back to all pictures: " : "Enlarge the picture of ";
-      figure.querySelector("button").ariaLabel = words + nameOf(figure);
+      figure.querySelector("button span").textContent = words + nameOf(figure);
     }
   }
   // All in the places that they have without a choice.

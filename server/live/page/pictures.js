@@ -72,7 +72,7 @@ export function createPictures(world, link, chosen, bigView) {
       const enlarge = document.createElement("button");
       enlarge.type = "button";
       enlarge.className = "picture";
-      enlarge.append(picture);
+      enlarge.append(document.createElement("span"), picture);
       frame.dataset.camera = camera.name;
       frame.append(enlarge, caption);
       section.append(frame);
