@@ -329,6 +329,10 @@ void World::step() {
 std::size_t World::contact_count() const {
   return impl_->scene->contact_count();
 }
+void World::contacts(RobotId id, std::vector<ContactPoint>& out) const {
+  impl_->robot(id);
+  impl_->scene->contacts(id, impl_->settings.time_step_s, out);
+}
 std::size_t World::pair_count() const {
   return impl_->scene->pair_count();
 }

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/contact_point.hpp"
 #include "physics/pose.hpp"
 #include "physics/prescribed_motion.hpp"
 #include "physics/readings.hpp"
@@ -78,6 +79,11 @@ class World {
   // Advances everything by one time step.
   void step();
   std::size_t contact_count() const;  // contact points of the last step
+  // Replaces `out` with the points where the robot was pressed upon in the last step; the forces are means over that
+  // step. None before the first step, and after teleport(). A point between two robots is in the lists of both, with
+  // opposite forces. The sum of a robot's forces is its mass times the acceleration of its centre of mass less gravity.
+  // Read from the solver when called: a step does nothing for it. Allocates only if `out` lacks room.
+  void contacts(RobotId id, std::vector<ContactPoint>& out) const;
   // Pairs of bodies near each other: what a step's time grows with. Beyond kMostPairs, boxes meet nothing but the
   // ground; pairs_left_out() counts how often that happened so far.
   std::size_t pair_count() const;

@@ -74,7 +74,9 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       collider_a_(meeting.collider_a),
       collider_b_(meeting.collider_b),
-      p_W_(touch.p_W) {
+      p_W_(touch.p_W),
+      part_a_(meeting.surface_a->part),
+      part_b_(meeting.surface_b->part) {
   const Surface &surface_a = *meeting.surface_a, &surface_b = *meeting.surface_b;
   const btVector3& normal = touch.normal_W;
   // Velocity of the belt's surface for a belt speed of -1: n x axis, along the belt, shorter towards the side faces.

@@ -53,7 +53,15 @@ class Contact {
 
   const Collider& collider_a() const { return *collider_a_; }
   const Collider& collider_b() const { return *collider_b_; }
+  // Of the robots that these belong to.
+  TouchingPart part_a() const { return part_a_; }
+  TouchingPart part_b() const { return part_b_; }
   const btVector3& p_W() const { return p_W_; }
+  // Newton seconds of the step: normal and friction. B has the opposite.
+  btVector3 impulse_on_a_W() const {
+    return vector_of(row_[0], 0) * normal_impulse_ + vector_of(row_[1], 0) * friction_impulse_[0] +
+           vector_of(row_[2], 0) * friction_impulse_[1];
+  }
   bool pressed() const { return normal_impulse_ > 0; }
 
  private:
@@ -99,6 +107,7 @@ class Contact {
   btScalar* stored_impulse_[3];
   const Collider *collider_a_, *collider_b_;
   btVector3 p_W_;
+  TouchingPart part_a_, part_b_;
 };
 
 }  // namespace kenaf::physics

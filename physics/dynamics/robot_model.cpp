@@ -13,7 +13,7 @@ constexpr int kFlipperPieces = 2;  // of a straight run, with contacts at the en
 
 // `lug_height_m` is the description's.
 Surface belt_surface(const RobotDescription& robot, robot::Track side, double friction_along, double friction_across,
-                     double lug_height_m, Belt* belt, double axis_y) {
+                     double lug_height_m, Belt* belt, double axis_y, TouchingPart part) {
   const Effects& effects = robot.effects;
   const double grip = side_factor(side, effects.friction_asymmetry);
   return {.friction_along = friction_along * effects.friction_along_scale * grip,
@@ -23,7 +23,18 @@ Surface belt_surface(const RobotDescription& robot, robot::Track side, double fr
           .lug_height_m = lug_height_m * effects.lug_height_scale,
           .shear_deformation_m = robot.track.front().shear_deformation_m + effects.shear_deformation_m,
           .compliance_scale = effects.ground_compliance_scale,
-          .damping_scale = effects.ground_damping_scale};
+          .damping_scale = effects.ground_damping_scale,
+          .part = part};
+}
+
+TouchingPart part_of(robot::Track side) {
+  return side == robot::kLeft ? TouchingPart::left_track : TouchingPart::right_track;
+}
+
+TouchingPart part_of(robot::Flipper which) {
+  const bool left = robot::side_of(which) == robot::kLeft;
+  if (robot::is_front(which)) return left ? TouchingPart::front_left_flipper : TouchingPart::front_right_flipper;
+  return left ? TouchingPart::rear_left_flipper : TouchingPart::rear_right_flipper;
 }
 
 std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, const btVector3& inertia,
@@ -111,24 +122,25 @@ void RobotModel::make_hull(RobotId id) {
     for (const TrackDescription& track : description.track) {
       add_belt_to_hull(track, track.center_m(side),
                        belt_surface(description, side, track.friction_along, track.friction_across, track.lug_height_m,
-                                    &belts_[side], 1));
+                                    &belts_[side], 1, part_of(side)));
     }
   }
 
   // Casters are wheels that slide, on a surface without a belt; the body between the tracks slides too.
-  const auto sliding = [this](double friction) {
+  const auto sliding = [this](double friction, TouchingPart part) {
     return Surface{.friction_along = friction,
                    .friction_across = friction,
                    .compliance_scale = description.effects.ground_compliance_scale,
-                   .damping_scale = description.effects.ground_damping_scale};
+                   .damping_scale = description.effects.ground_damping_scale,
+                   .part = part};
   };
   for (const CasterDescription& caster : description.caster)
-    add_belt_to_hull(caster.as_wheel(), caster.p_BC_m, sliding(caster.friction));
+    add_belt_to_hull(caster.as_wheel(), caster.p_BC_m, sliding(caster.friction, TouchingPart::caster));
 
   // A hull, not a btBoxShape, so that all of a robot meets the ground by the same algorithm.
   const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
   add_to_hull(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
-              sliding(body.friction));
+              sliding(body.friction, TouchingPart::body));
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
   body_list_.push_back(hull_.get());
 }
@@ -176,7 +188,7 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   flipper.collider.robot = static_cast<std::uint32_t>(id);
   const Surface surface =
       belt_surface(description, side, f.friction_along, f.friction_across, description.track.front().lug_height_m,
-                   f.belt_driven ? &belts_[side] : nullptr, front ? 1 : -1);
+                   f.belt_driven ? &belts_[side] : nullptr, front ? 1 : -1, part_of(which));
   flipper.collider.surfaces = {surface};
   flipper.belt = {.radius = {f.pivot_radius_m, f.tip_radius_m},
                   .length = f.length_m,

@@ -259,4 +259,17 @@ void Scene::touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const {
       out.push_back(from_bullet(contact.p_W()));
 }
 
+void Scene::contacts(RobotId robot, double time_step_s, std::vector<ContactPoint>& out) const {
+  out.clear();
+  const auto id = static_cast<std::uint32_t>(robot);
+  for (const Contact& contact : solver_.contacts()) {
+    if (!contact.pressed()) continue;
+    // Two of one robot's own parts may meet: then it is in the list twice, and cancels.
+    const Eigen::Vector3d p_W = from_bullet(contact.p_W());
+    const Eigen::Vector3d force_W_n = from_bullet(contact.impulse_on_a_W() / time_step_s);
+    if (contact.collider_a().robot == id) out.push_back({p_W, force_W_n, contact.part_a()});
+    if (contact.collider_b().robot == id) out.push_back({p_W, -force_W_n, contact.part_b()});
+  }
+}
+
 }  // namespace kenaf::physics

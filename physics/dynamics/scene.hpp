@@ -42,6 +42,8 @@ class Scene {
                                  std::uint32_t ignored_robot) const;
   // The points where a robot is pressed upon, in W.
   void touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const;
+  // See World; the last step's length.
+  void contacts(RobotId robot, double time_step_s, std::vector<ContactPoint>& out) const;
   std::size_t contact_count() const { return solver_.contacts().size(); }
   std::size_t pair_count() const { return static_cast<std::size_t>(pairs_.getNumOverlappingPairs()); }
   std::uint64_t pairs_left_out() const { return pairs_.left_out(); }  // so far

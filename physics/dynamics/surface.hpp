@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "physics/contact_point.hpp"
+
 namespace kenaf::physics {
 
 // A track's belt: one degree of freedom in addition to the rigid bodies. Its speed is a state of the simulation, solved
@@ -38,6 +40,7 @@ struct Surface {
   double shear_deformation_m = 0;  // K of shear.hpp, of a belt
   double compliance_scale = 1;     // of the compliance of the ground under it
   double damping_scale = 1;
+  TouchingPart part = TouchingPart::body;  // of a robot; nothing else has one
 };
 
 // Stored at btCollisionObject::getUserPointer().

@@ -170,6 +170,21 @@ TEST_CASE("No step allocates where sixteen robots turn among each other") {
   CHECK(allocations_in(world, 1, world.robots().front(), nullptr) == 0);
 }
 
+TEST_CASE("Contacts are read without allocation into a list that has room") {
+  World world(ground(), {}, 1);
+  const RobotId robot = world.add_robot(load_robot("kenaf"), "robot", {{0, 0, 0.1}, Eigen::Quaterniond::Identity()});
+  std::vector<ContactPoint> points;
+  points.reserve(256);
+  world.step();
+  const long before = heap_calls();
+  for (int i = 0; i < 1000; ++i) {
+    world.step();
+    world.contacts(robot, points);
+  }
+  CHECK(heap_calls() == before);
+  CHECK_FALSE(points.empty());
+}
+
 TEST_CASE("Reading sensors allocates nothing but what a range scan holds") {
   World world(ground(), {}, 1);
   RobotDescription description = load_robot("kenaf");
