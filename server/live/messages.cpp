@@ -46,6 +46,31 @@ void write_camera_states(Writer& out, const RobotState& robot, std::span<const F
   out.close(']');
 }
 
+// A row of seven numbers each: a hundred of them come 30 times a second.
+void write_contacts(Writer& out, const RobotState& robot) {
+  out.key("contacts").open('[');
+  for (const physics::ContactPoint& contact : robot.contacts) {
+    out.comma().open('[').integer(static_cast<std::uint64_t>(contact.part));
+    for (const double m : contact.p_W) out.comma().number(m);
+    for (const double n : contact.force_W_n) out.comma().number(n, 2);
+    out.close(']');
+  }
+  out.close(']');
+}
+
+void write_sensors(Writer& out, const RobotState& robot) {
+  out.key("scans").open('[');
+  for (const world_server::RangeScan& scan : robot.scans) {
+    out.comma().open('{').key("name").text(scan.name).key("sonar").boolean(scan.sonar);
+    out.key("p").vector(scan.X_WS.p).key("q").rotation(scan.X_WS.q).key("fov").number(scan.field_of_view_rad);
+    out.key("ranges").numbers(scan.range_m, 3).close('}');
+  }
+  out.close(']');
+  if (!robot.inertial) return;
+  out.key("imu").open('{').key("p").vector(robot.inertial->p_W);
+  out.key("a").vector(robot.inertial->a_W_mps2).key("w").vector(robot.inertial->w_W_radps).close('}');
+}
+
 std::string_view mode_name(robot::JointMode mode) {
   switch (mode) {
     case robot::JointMode::angle:
@@ -74,7 +99,7 @@ void write_command(Writer& out, const RobotState& robot) {
   out.close('}');
 }
 
-void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge> frames) {
+void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge> frames, const ShowRequest& shown) {
   out.comma().open('{').key("id").integer(robot.id);
   out.key("p").vector(robot.X_WB.p).key("q").rotation(robot.X_WB.q).key("v").vector(robot.v_WB_mps);
   out.key("track_mps").numbers(robot.track_mps).key("track_m").numbers(robot.track_m);
@@ -93,6 +118,8 @@ void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge>
     out.key("holder_silent").boolean(robot.holder_silent);
   }
   write_camera_states(out, robot, frames);
+  if (shown.contacts) write_contacts(out, robot);
+  if (shown.sensors == robot.id) write_sensors(out, robot);
   if (!robot.fault.empty()) out.key("fault").text(robot.fault);
   out.close('}');
 }
@@ -119,7 +146,7 @@ std::string hello_message(world_server::OperatorId you, std::uint32_t server, st
   return out.close('}').take();
 }
 
-std::string inventory_message(const WorldState& state) {
+std::string inventory_message(const WorldState& state, const std::optional<physics::RobotDimensions>& placeable) {
   Writer out;
   out.open('{').key("type").text("inventory").key("robots").open('[');
   for (const RobotState& robot : state.robots) {
@@ -134,7 +161,13 @@ std::string inventory_message(const WorldState& state) {
   for (const BoxState& box : state.boxes) {
     out.comma().open('{').key("id").integer(box.id).key("size").vector(box.size_m).close('}');
   }
-  return out.close(']').close('}').take();
+  out.close(']');
+  if (placeable) {
+    out.key("placeable").open('{');
+    write_dimensions(out, *placeable);
+    out.close('}');
+  }
+  return out.close('}').take();
 }
 
 bool same_inventory(const WorldState& a, const WorldState& b) {
@@ -143,14 +176,14 @@ bool same_inventory(const WorldState& a, const WorldState& b) {
 }
 
 std::string state_message(const WorldState& state, std::uint64_t number, double reached, std::size_t viewers,
-                          std::span<const FrameAge> frames) {
+                          std::span<const FrameAge> frames, const ShowRequest& shown) {
   Writer out;
   out.open('{').key("type").text("state").key("n").integer(number);
   out.key("t").number(state.time_s).key("step").integer(state.step).key("paused").boolean(state.paused);
   if (state.paused) write_pauser(out, state.pauser);
   out.key("speed").number(state.speed, 3).key("reached").number(reached, 3).key("viewers").integer(viewers);
   out.key("robots").open('[');
-  for (const RobotState& robot : state.robots) write_robot(out, robot, frames);
+  for (const RobotState& robot : state.robots) write_robot(out, robot, frames, shown);
   out.close(']').key("boxes").open('[');
   for (const BoxState& box : state.boxes) {
     out.comma().open('{').key("p").vector(box.X_WBox.p).key("q").rotation(box.X_WBox.q).close('}');

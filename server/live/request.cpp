@@ -71,12 +71,37 @@ LookRequest look(const json& object) {
   return request;
 }
 
+PlaceRequest place(const json& object) {
+  constexpr double kFarthest_m = 1e4;
+  const auto found = object.find("p");
+  if (found == object.end()) return {};
+  if (!found->is_array() || found->size() != 3) throw std::runtime_error("p is not a list of three");
+  world_server::GroundPlace where{{0, 0, 0}, object.contains("yaw") ? number(object, "yaw", -100, 100) : 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& value = (*found)[i];
+    if (!value.is_number()) throw std::runtime_error("p holds something that is not a number");
+    const double m = value.get<double>();
+    if (!(std::abs(m) <= kFarthest_m)) throw std::runtime_error("p is out of range");
+    where.p_W[static_cast<Eigen::Index>(i)] = m;
+  }
+  return {where};
+}
+
+ShowRequest show(const json& object) {
+  ShowRequest request;
+  if (object.contains("contacts")) request.contacts = boolean(object, "contacts");
+  if (object.contains("sensors"))
+    request.sensors = static_cast<std::uint32_t>(number(object, "sensors", 0, 4294967295.0));
+  return request;
+}
+
 Request read(const json& object) {
   const auto found = object.find("type");
   if (found == object.end() || !found->is_string()) throw std::runtime_error("type is missing");
   const auto& type = found->get_ref<const std::string&>();
   if (type == "drive") return drive(object);
   if (type == "look") return look(object);
+  if (type == "show") return show(object);
   if (type == "ping") return PingRequest{number(object, "t", -1e15, 1e15)};
   if (type == "pause") return PauseRequest{boolean(object, "on")};
   if (type == "step") return StepRequest{number(object, "time", 1e-4, 60)};
@@ -86,7 +111,7 @@ Request read(const json& object) {
     return SpeedRequest{value};
   }
   if (type == "reset") return ResetRequest{};
-  if (type == "place") return PlaceRequest{};
+  if (type == "place") return place(object);
   if (type == "take") return TakeRequest{robot(object)};
   if (type == "let-go") return LetGoRequest{robot(object)};
   if (type == "remove") return RemoveRequest{robot(object)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,7 +22,9 @@ struct SpeedRequest {
   double value;
 };  // 0, or from 0.001 to 1000
 struct ResetRequest {};
-struct PlaceRequest {};  // places a robot and takes it
+struct PlaceRequest {
+  std::optional<world_server::GroundPlace> where{};  // within 10 km of the origin; none: at a free start pose
+};                                                   // places a robot and takes it
 struct TakeRequest {
   std::uint32_t robot;
 };
@@ -40,12 +43,18 @@ struct LookRequest {
   std::string camera;
   world_server::CameraOrder order;
 };  // finite numbers
+// What this page's states have on top, from now on.
+struct ShowRequest {
+  bool contacts = false;
+  std::uint32_t sensors = 0;  // of that robot; 0: of none
+  bool operator==(const ShowRequest&) const = default;
+};
 struct PingRequest {
   double t;
 };  // echoed unchanged
 
 using Request = std::variant<PauseRequest, StepRequest, SpeedRequest, ResetRequest, PlaceRequest, TakeRequest,
-                             LetGoRequest, RemoveRequest, DriveRequest, LookRequest, PingRequest>;
+                             LetGoRequest, RemoveRequest, DriveRequest, LookRequest, ShowRequest, PingRequest>;
 
 // std::string: the reason why `text` is no request.
 std::variant<Request, std::string> parse_request(std::string_view text);

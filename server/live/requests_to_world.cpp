@@ -36,9 +36,9 @@ struct CarryOut {
     simulation.reset();
     return {};
   }
-  std::string operator()(const PlaceRequest&) const {
+  std::string operator()(const PlaceRequest& request) const {
     std::uint32_t robot = 0;
-    const std::string_view reason = world_server::place_robot_by_hand(simulation, who, robot);
+    const std::string_view reason = world_server::place_robot_by_hand(simulation, who, robot, request.where);
     return reason.empty() ? placed_message(robot) : reply("place", reason);
   }
   std::string operator()(const TakeRequest& request) const {
@@ -56,6 +56,7 @@ struct CarryOut {
   std::string operator()(const LookRequest& request) const {
     return reply("look", world_server::look_by_hand(simulation, request.robot, who, request.camera, request.order));
   }
+  std::string operator()(const ShowRequest&) const { return {}; }
   std::string operator()(const PingRequest&) const { return {}; }
 };
 

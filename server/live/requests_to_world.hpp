@@ -8,7 +8,7 @@
 
 namespace kenaf::live {
 
-// Returns the answer to the page; empty: none. PingRequest does not concern the world.
+// Returns the answer to the page; empty: none. ShowRequest and PingRequest do not concern the world.
 std::string carry_out(world_server::Simulation& simulation, world_server::OperatorId who, const Request& request);
 
 }  // namespace kenaf::live

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -18,6 +20,7 @@
 #include "server/live/viewer.hpp"
 #include "server/live/web_server.hpp"
 #include "server/live/world_list.hpp"
+#include "server/world_server/manual_drive.hpp"
 
 namespace kenaf::live {
 
@@ -102,6 +105,7 @@ struct View::Implementation {
     });
   }
 
+  world_server::StateExtras asked_for() const;
   void look();
   void show();
   void wait_and_look();
@@ -110,19 +114,38 @@ struct View::Implementation {
   asio::steady_timer next_look{hub.site.io};
   // Passed to the world's thread and back: owned by one of the two at a time.
   world_server::WorldState state;
-  world_server::WorldState shown;  // the state whose inventory the viewers have
-  bool looking = false;            // a request for the state is under way or planned
+  std::optional<physics::RobotDimensions> placeable;  // without tracks: there is none
+  world_server::WorldState shown;                     // the state whose inventory the viewers have
+  bool looking = false;                               // a request for the state is under way or planned
   std::uint64_t states = 0;
   SpeedMeter speed;
   std::shared_ptr<void> frame_listener;
   WebServer server;  // last: its thread ends before the members it uses
 };
 
+// By any viewer. The world's thread casts the rays, so that only so many robots are looked at, of those that came
+// first.
+world_server::StateExtras View::Implementation::asked_for() const {
+  constexpr std::size_t kMostSensors = 8;
+  world_server::StateExtras extras;
+  for (const Viewer* viewer : hub.viewers) {
+    const auto& [contacts, sensors] = viewer->shown();
+    extras.contacts |= contacts;
+    const bool known = std::ranges::find(extras.sensors, sensors) != extras.sensors.end();
+    if (sensors != 0 && !known && extras.sensors.size() < kMostSensors) extras.sensors.push_back(sensors);
+  }
+  return extras;
+}
+
 void View::Implementation::look() {
   looking = true;
   hub.ask(
-      [this](world_server::Simulation& simulation) {
-        world_server::read_state(simulation, state);
+      [this, extras = asked_for()](world_server::Simulation& simulation) {
+        world_server::read_state(simulation, state, extras);
+        if (!placeable) {
+          placeable.emplace();  // asked for once, even if it throws
+          if (const auto* robot = world_server::robot_to_place(simulation)) placeable = physics::dimensions_of(*robot);
+        }
         return true;
       },
       [this](bool) {
@@ -134,7 +157,8 @@ void View::Implementation::look() {
 void View::Implementation::show() {
   if (!hub.inventory || !same_inventory(state, shown)) {
     shown = state;
-    hub.inventory = std::make_shared<const std::string>(inventory_message(state));
+    hub.inventory = std::make_shared<const std::string>(
+        inventory_message(state, placeable && !placeable->tracks.empty() ? placeable : std::nullopt));
     for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->tell(hub.inventory);
   }
   const double reached = speed.read(state.wall_s, state.time_s);
@@ -144,9 +168,19 @@ void View::Implementation::show() {
       frames.push_back({frame->id, frame->number, frame->robot_time_s, image_server::age_s(*frame)});
     }
   }
-  const auto message =
-      std::make_shared<const std::string>(state_message(state, ++states, reached, hub.viewers.size(), frames));
-  for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->show(message);
+  // One message for all pages that show the same; as a rule that is one message.
+  ++states;
+  std::vector<std::pair<ShowRequest, Message>> messages;
+  for (std::size_t i = hub.viewers.size(); i-- > 0;) {
+    const ShowRequest shown_there = hub.viewers[i]->shown();
+    auto made = std::ranges::find(messages, shown_there, &std::pair<ShowRequest, Message>::first);
+    if (made == messages.end()) {
+      messages.emplace_back(shown_there, std::make_shared<const std::string>(state_message(
+                                             state, states, reached, hub.viewers.size(), frames, shown_there)));
+      made = std::prev(messages.end());
+    }
+    hub.viewers[i]->show(made->second);
+  }
 }
 
 void View::Implementation::wait_and_look() {

@@ -42,6 +42,7 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
     write();
   }
   void tell(const Message& message) override;
+  const ShowRequest& shown() const override { return shown_; }
 
  private:
   void welcome();
@@ -59,6 +60,7 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
   beast::flat_buffer received_;
   std::deque<Message> answers_;
   Message state_, sending_;
+  ShowRequest shown_;
   bool open_ = false;
   Clock::time_point second_began_ = Clock::now();
   int requests_ = 0;  // in this second
@@ -111,6 +113,10 @@ void OpenViewer::take(std::string_view text) {
   const Request& request = std::get<Request>(parsed);
   if (const auto* ping = std::get_if<PingRequest>(&request)) {
     tell(pong_message(ping->t));
+    return read_again();
+  }
+  if (const auto* show = std::get_if<ShowRequest>(&request)) {
+    shown_ = *show;
     return read_again();
   }
   hub_.ask([request, who = who_](world_server::Simulation& simulation) { return carry_out(simulation, who, request); },

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/live/hub.hpp"
+#include "server/live/request.hpp"
 
 namespace kenaf::live {
 
@@ -18,6 +19,8 @@ class Viewer {
   virtual void show(const Message& state) = 0;
   // Always sent; a viewer that leaves too many unread is disconnected.
   virtual void tell(const Message& message) = 0;
+  // What its states have on top.
+  virtual const ShowRequest& shown() const = 0;
 
  protected:
   ~Viewer() = default;

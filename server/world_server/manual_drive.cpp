@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "physics/robot_dimensions.hpp"
 #include "server/world_server/start_poses.hpp"
 
 namespace kenaf::world_server {
@@ -28,6 +29,11 @@ void release(Simulation& simulation, Session& session) {
   forget_curve(*session.robot);
   simulation.apply_command(session);
   spdlog::info("robot {} is no longer driven by hand", session.robot->name);
+}
+
+physics::Pose pose_over(const GroundPlace& where, const physics::RobotDescription& description) {
+  const Eigen::Vector3d up(0, 0, physics::dimensions_of(description).ride_height_m);
+  return {where.p_W + up, physics::rotation_from({0, 0, where.yaw_rad})};
 }
 
 robot::Command within_limits(const physics::RobotDescription& robot, robot::Command command) {
@@ -65,18 +71,23 @@ std::string_view take_robot(Simulation& simulation, std::uint32_t id, OperatorId
   return {};
 }
 
-std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& id) {
+const physics::RobotDescription* robot_to_place(Simulation& simulation) {
+  return simulation.description_for_class("USARBot.Kenaf");
+}
+
+std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& id,
+                                     const std::optional<GroundPlace>& where) {
   const auto placed = std::ranges::count_if(simulation.sessions, [](const auto& s) { return s->placed_by_operator; });
   if (static_cast<std::size_t>(placed) >= kMostPlacedRobots)
     return "operators have already placed 8 robots: remove one first";
   if (simulation.robot_count() >= kMostRobots) return "there are already 64 robots in the world";
-  const physics::RobotDescription* description = simulation.description_for_class("USARBot.Kenaf");
+  const physics::RobotDescription* description = robot_to_place(simulation);
   if (description == nullptr) return "there is no description of USARBot.Kenaf";
   Session& session = simulation.connect("an operator");
   session.placed_by_operator = true;
   try {
     place_robot(simulation, session, *description, fmt::format("Manual{}", session.id),
-                free_start_pose(simulation.world).X_WB);
+                where ? pose_over(*where, *description) : free_start_pose(simulation.world).X_WB);
   } catch (...) {
     simulation.disconnect(session);
     throw;

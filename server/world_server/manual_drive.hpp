@@ -27,8 +27,17 @@ robot::Command standing_command();
 
 // Takes the robot of that session. Its present holder may take it again.
 std::string_view take_robot(Simulation& simulation, std::uint32_t session, OperatorId who);
-// Places a robot of the class USARBot.Kenaf at a free start pose, held by `who`; `session`: its session, if done.
-std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& session);
+// The robot that place_robot_by_hand() places; nullptr: its description is missing.
+const physics::RobotDescription* robot_to_place(Simulation& simulation);
+// A place on the ground, in W, and the direction to look to.
+struct GroundPlace {
+  Eigen::Vector3d p_W;
+  double yaw_rad;
+};
+// Places a robot of the class USARBot.Kenaf level over `where`, lifted until it is free, or else at a free start pose;
+// held by `who`. `session`: its session, if done. `where` must be finite and within 100 km of W's origin.
+std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& session,
+                                     const std::optional<GroundPlace>& where = std::nullopt);
 // `command` is limited to the robot's abilities. Numbers must be finite.
 std::string_view drive_by_hand(Simulation& simulation, std::uint32_t session, OperatorId who,
                                const robot::Command& command);

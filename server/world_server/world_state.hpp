@@ -26,6 +26,22 @@ struct CameraState {
   std::optional<Link> pan, tilt;  // present angles, if a mount turns it
 };
 
+// What a ray sensor of a robot has before it, without the sensor's noise and delay.
+struct RangeScan {
+  std::string name;
+  physics::Pose X_WS;            // looks along x
+  double field_of_view_rad = 0;  // in the plane of x and y; of a sonar the opening of its cone
+  bool sonar = false;
+  std::vector<double> range_m;  // evenly over the field of view, the left end first; infinite: nothing within its range
+};
+
+// What an inertial sensor feels, without noise. The acceleration, less gravity, is that of the whole robot's centre of
+// mass: the sum of the contacts' forces by its mass.
+struct InertialState {
+  Eigen::Vector3d p_W{0, 0, 0};  // of its mount
+  Eigen::Vector3d a_W_mps2{0, 0, 0}, w_W_radps{0, 0, 0};
+};
+
 struct RobotState {
   std::uint32_t id = 0;       // of its session: never reused within one server
   physics::RobotId robot{0};  // in the world; likewise
@@ -45,6 +61,10 @@ struct RobotState {
   bool holder_silent = false;
   std::string fault;                 // empty: none
   std::vector<CameraState> cameras;  // in the order of its description
+  // Only if asked for (StateExtras).
+  std::vector<physics::ContactPoint> contacts;
+  std::vector<RangeScan> scans;
+  std::optional<InertialState> inertial;  // of its first IMU
 };
 
 // A box that may have moved from its place in the world's description.
@@ -65,7 +85,16 @@ struct WorldState {
   std::vector<BoxState> boxes;
 };
 
+// What is read on top, because it takes longer than the rest.
+struct StateExtras {
+  bool contacts = false;                 // of all robots
+  std::vector<std::uint32_t> sensors{};  // robots, by their `id`, whose scans and inertial state are read
+};
+
+// Rays of a range scanner that are cast for a scan; a scanner with more of them is thinned out.
+inline constexpr std::size_t kMostScanRays = 91;
+
 // Reads the world at simulation.wall_s.
-void read_state(const Simulation& simulation, WorldState& state);
+void read_state(const Simulation& simulation, WorldState& state, const StateExtras& extras = {});
 
 }  // namespace kenaf::world_server

@@ -23,6 +23,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!std::isfinite(joint.value)) std::abort();
       }
     }
+    if (const auto* place = std::get_if<live::PlaceRequest>(request); place && place->where) {
+      if (!place->where->p_W.allFinite() || !std::isfinite(place->where->yaw_rad)) std::abort();
+    }
     if (const auto* look = std::get_if<live::LookRequest>(request)) {
       for (const auto& angle : {look->order.pan_rad, look->order.tilt_rad, look->order.field_of_view_rad}) {
         if (angle && !std::isfinite(*angle)) std::abort();

@@ -60,7 +60,14 @@ TEST_CASE("The other requests are read") {
   CHECK_FALSE(look.order.tilt_rad);
   CHECK(look.order.field_of_view_rad == 0.5);
   request<ResetRequest>(R"({"type":"reset"})");
-  request<PlaceRequest>(R"({"type":"place","more":1})");
+  CHECK_FALSE(request<PlaceRequest>(R"({"type":"place","more":1})").where);
+  const auto where = request<PlaceRequest>(R"({"type":"place","p":[1,-2.5,0.2],"yaw":0.5})").where;
+  REQUIRE(where);
+  CHECK(where->p_W == Eigen::Vector3d(1, -2.5, 0.2));
+  CHECK(where->yaw_rad == 0.5);
+  CHECK(request<PlaceRequest>(R"({"type":"place","p":[1,2,3]})").where->yaw_rad == 0);
+  CHECK(request<ShowRequest>(R"({"type":"show"})") == ShowRequest{});
+  CHECK(request<ShowRequest>(R"({"type":"show","contacts":true,"sensors":3})") == ShowRequest{true, 3});
   CHECK(request<TakeRequest>(R"({"type":"take","robot":4294967295})").robot == 4294967295);
   CHECK(request<LetGoRequest>(R"({"type":"let-go","robot":1})").robot == 1);
   CHECK(request<RemoveRequest>(R"({"type":"remove","robot":1})").robot == 1);
@@ -83,6 +90,13 @@ TEST_CASE("What is no request is refused in words") {
                             R"({"type":"step","time":1e9})",
                             R"({"type":"speed","value":-1})",
                             R"({"type":"speed","value":1e-9})",
+                            R"({"type":"place","p":[1,2]})",
+                            R"({"type":"place","p":[1,2,null]})",
+                            R"({"type":"place","p":[1,2,1e5]})",
+                            R"({"type":"place","p":[1,2,1e999]})",
+                            R"({"type":"place","p":[1,2,3],"yaw":"north"})",
+                            R"({"type":"show","contacts":1})",
+                            R"({"type":"show","sensors":-1})",
                             R"({"type":"look","robot":1})",
                             R"({"type":"look","robot":1,"camera":"Camera","pan":1e999})",
                             R"({"type":"look","robot":1,"camera":"Camera","tilt":"up"})",
@@ -130,6 +144,47 @@ TEST_CASE("A state says how everything is, in numbers that JSON knows") {
   message = json::parse(state_message(state, 1, 0, 0));
   CHECK(message["robots"][0]["p"][0].is_null());
   CHECK(json::parse(inventory_message(state))["robots"][0]["name"] == "</script>\"");
+}
+
+TEST_CASE("Contacts and sensors are in a state only if they are shown, the latter of one robot") {
+  world_server::Simulation simulation = make_simulation();
+  std::uint32_t first = 0, second = 0;
+  REQUIRE(world_server::place_robot_by_hand(simulation, world_server::OperatorId{7}, first).empty());
+  REQUIRE(world_server::place_robot_by_hand(simulation, world_server::OperatorId{7}, second).empty());
+  for (int i = 0; i < 1000; ++i) simulation.world.step();
+  world_server::WorldState state;
+  world_server::read_state(simulation, state, {true, {first, second}});
+  const json plain = json::parse(state_message(state, 1, 1, 1));
+  for (const char* key : {"contacts", "scans", "imu"}) CHECK_FALSE(plain["robots"][0].contains(key));
+  const json shown = json::parse(state_message(state, 1, 1, 1, {}, {true, second}));
+  double up_n = 0;
+  for (const json& contact : shown["robots"][0]["contacts"]) {
+    REQUIRE(contact.size() == 7);
+    CHECK((contact[0] == 0 || contact[0] == 1));  // a track
+    up_n += contact[6].get<double>();
+  }
+  CHECK(up_n == Approx(20 * 9.80665).epsilon(1e-3));
+  CHECK_FALSE(shown["robots"][0].contains("scans"));
+  // share/robots/kenaf.toml has a scanner and a sonar; nothing is within their range but perhaps the other robot
+  const json& scans = shown["robots"][1]["scans"];
+  REQUIRE(scans.size() == 2);
+  CHECK(scans[0]["name"] == "Scanner1");
+  CHECK(scans[0]["ranges"].size() == world_server::kMostScanRays);
+  CHECK(scans[1]["sonar"] == true);
+  CHECK(scans[1]["ranges"].size() == 1);
+  CHECK(shown["robots"][1]["imu"]["a"][2].get<double>() == Approx(9.80665).epsilon(1e-3));
+}
+
+TEST_CASE("An inventory has the robot that can be placed") {
+  world_server::Simulation simulation = make_simulation();
+  world_server::WorldState state;
+  world_server::read_state(simulation, state);
+  CHECK_FALSE(json::parse(inventory_message(state)).contains("placeable"));
+  const auto* robot = world_server::robot_to_place(simulation);
+  REQUIRE(robot != nullptr);
+  const json placeable = json::parse(inventory_message(state, physics::dimensions_of(*robot)))["placeable"];
+  CHECK(placeable["tracks"][0]["length"] == 0.58);
+  CHECK(placeable["ride_height"] == 0.09);
 }
 
 TEST_CASE("An inventory says what everything is, and is new when somebody comes or leaves") {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -211,6 +212,37 @@ TEST_CASE("A page places a robot in an empty world, drives it, and it stops when
   CHECK(stopped["p"][0] > 0);
   page.send_text(R"({"type":"remove","robot":)" + std::to_string(robot) + "}");
   page.state_with([](const json& state) { return state["robots"].empty(); });
+}
+
+TEST_CASE("A page has contacts only while it asks for them, and another page has none") {
+  ServedWorld world;
+  Page page(world), other(world);
+  const int robot = page.place();
+  page.send_text(R"({"type":"show","contacts":true})");
+  const json standing =
+      page.robot_with([](const json& state) { return state.contains("contacts") && !state["contacts"].empty(); });
+  CHECK(standing["id"] == robot);
+  for (int i = 0; i < 5; ++i) CHECK_FALSE(other.robot_with([](const json&) { return true; }).contains("contacts"));
+  page.send_text(R"({"type":"show","contacts":false,"sensors":)" + std::to_string(robot) + "}");
+  const json seeing = page.robot_with([](const json& state) { return state.contains("scans"); });
+  CHECK_FALSE(seeing.contains("contacts"));
+  CHECK(seeing.contains("imu"));
+  page.send_text(R"({"type":"show"})");
+  page.robot_with([](const json& state) { return !state.contains("scans"); });
+}
+
+TEST_CASE("A page places a robot where it says, on the ground and turned") {
+  ServedWorld world;
+  Page page(world);
+  page.send_text(R"({"type":"place","p":[2,-3,0],"yaw":1.5707963}))");
+  page.message_of("refused");  // a bracket too many
+  page.send_text(R"({"type":"place","p":[2,-3,0],"yaw":1.5707963})");
+  page.message_of("placed");
+  const json robot = page.robot_with([](const json&) { return true; });
+  CHECK(robot["p"][0] == Approx(2).margin(1e-3));
+  CHECK(robot["p"][1] == Approx(-3).margin(1e-3));
+  CHECK(robot["p"][2] == Approx(0.09).margin(2e-3));  // its belly is 90 mm below its centre
+  CHECK(robot["q"][3] == Approx(std::sqrt(0.5)).margin(1e-3));
 }
 
 TEST_CASE("Of two pages one drives, and when its connection ends the other can") {

@@ -2,6 +2,8 @@
 // which it was said; robot time passes when the test says.
 #include "server/world_server/manual_drive.hpp"
 
+#include <cmath>
+
 #include "tests/server/world_server/conversation.hpp"
 
 namespace kenaf::world_server {
@@ -211,6 +213,24 @@ TEST_CASE("Rule 4: in an empty world an operator places a robot and drives it, a
   CHECK_FALSE(remove_placed_robot(talk.simulation, robot, kAnna).empty());
   CHECK(remove_placed_robot(talk.simulation, robot, kBen).empty());
   CHECK(talk.simulation.robot_count() == 0);
+}
+
+TEST_CASE("A robot is placed where an operator says, turned, and on top of what stands there") {
+  Conversation talk;
+  talk.simulation.wall_s = talk.wall_s;
+  talk.simulation.world.add_box({"box", {1, 1, 0.3}, {{2, 0, 0.15}, Eigen::Quaterniond::Identity()}, 1, 0});
+  std::uint32_t on_ground = 0, on_box = 0;
+  const double quarter_rad = std::acos(-1) / 2;
+  REQUIRE(place_robot_by_hand(talk.simulation, kAnna, on_ground, GroundPlace{{-1, 2, 0}, quarter_rad}).empty());
+  REQUIRE(place_robot_by_hand(talk.simulation, kBen, on_box, GroundPlace{{2, 0, 0}, 0}).empty());
+  for (int i = 0; i < 1000; ++i) talk.simulation.world.step();
+  const auto pose = [&](std::uint32_t id) {
+    return talk.simulation.world.truth(talk.simulation.find_session(id)->robot->id).X_WB;
+  };
+  // share/robots/kenaf.toml: its belly is 90 mm below its centre
+  CHECK((pose(on_ground).p - Eigen::Vector3d(-1, 2, 0.09)).norm() < 2e-3);
+  CHECK(physics::roll_pitch_yaw(pose(on_ground).q).z() == Approx(quarter_rad).margin(1e-3));
+  CHECK((pose(on_box).p - Eigen::Vector3d(2, 0, 0.39)).norm() < 2e-3);
 }
 
 TEST_CASE("A client's robot cannot be removed, and one that left cannot be driven") {

@@ -1,8 +1,10 @@
 // What the simulation shows of itself to other threads.
 #include "server/world_server/world_state.hpp"
 
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <numbers>
 #include <thread>
 
 #include "server/world_server/manual_drive.hpp"
@@ -45,6 +47,43 @@ TEST_CASE("A state holds the clock, and each robot with its posture, its command
   read_state(talk.simulation, state);
   CHECK(state.robots.front().holder == OperatorId{9});
   CHECK(state.robots.front().command.track_speed_mps[robot::kLeft] == 0);
+}
+
+TEST_CASE("A state has contacts, scans and what an inertial sensor feels if they are asked for") {
+  Conversation talk;
+  // a wall 1 m before the robot's centre: its face is 0.95 m away
+  talk.send(
+      "CONTROL {Type Create} {ClassName Box} {Name wall} {Location 1,0,-0.5} {Scale 0.1,4,1}\r\n"
+      "INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n");
+  REQUIRE(talk.run(1));
+  WorldState state;
+  read_state(talk.simulation, state);
+  REQUIRE(state.robots.size() == 1);
+  CHECK(state.robots[0].contacts.empty());
+  CHECK(state.robots[0].scans.empty());
+  CHECK_FALSE(state.robots[0].inertial);
+
+  read_state(talk.simulation, state, {false, {state.robots[0].id}});
+  const RobotState& robot = state.robots[0];
+  CHECK(robot.contacts.empty());
+  REQUIRE(robot.inertial);
+  CHECK((robot.inertial->a_W_mps2 - Eigen::Vector3d(0, 0, 9.80665)).norm() < 0.01);
+  CHECK(robot.inertial->w_W_radps.norm() < 0.01);
+  // share/robots/kenaf.toml: a scanner of 180 degrees at x = 0.15 m, a sonar at x = 0.22 m
+  REQUIRE(robot.scans.size() == 2);
+  const double scanner_x_m = robot.X_WB.p.x() + 0.15, sonar_x_m = robot.X_WB.p.x() + 0.22;
+  const auto& ranges = robot.scans[0].range_m;
+  REQUIRE(ranges.size() == kMostScanRays);
+  CHECK(ranges[kMostScanRays / 2] == Approx(0.95 - scanner_x_m).margin(2e-3));
+  CHECK(ranges[68] == Approx((0.95 - scanner_x_m) / std::cos(std::numbers::pi * (0.5 - 68 / 90.0))).margin(4e-3));
+  CHECK(std::isinf(ranges.front()));  // along the wall
+  CHECK(robot.scans[1].sonar);
+  CHECK(robot.scans[1].range_m[0] == Approx(0.95 - sonar_x_m).margin(2e-3));
+
+  read_state(talk.simulation, state, {true, {}});
+  CHECK_FALSE(state.robots[0].contacts.empty());
+  CHECK(state.robots[0].scans.empty());
+  CHECK_FALSE(state.robots[0].inertial);
 }
 
 TEST_CASE("A state shows the boxes that may move: loose ones of the world, and those that clients made") {
