@@ -17,8 +17,11 @@ export function createDriving(world, link) {
   let lost = "";        // name of the robot that was yours when the link was lost
   let wasMine = false;
   let kept = 0;         // the robot that a reload finds again
-  const driving = { chosen: 0, update, placed, refused, closed, holding, lookingBack: () => false, live() {} };   // the last two: of past.js
-  const hands = watchHands(() => holding() !== null && !dialogIsOpen() && !driving.lookingBack(), speak);
+  // Of past.js: whether one looks back, and how to stop that. Of the 3D view: whether keys point there, and whether a place
+  // is pointed at before a robot is placed.
+  const driving = { chosen: 0, update, placed, refused, closed, holding, place, choose, lookingBack: () => false, live() {},
+                    isPointing: () => false, beforePlacing: () => false };
+  const hands = watchHands(() => holding() !== null && !dialogIsOpen() && !driving.lookingBack() && !driving.isPointing(), speak);
   driving.held = hands.held;
   driving.hands = hands;
   driving.letGoOfKeys = hands.letGo;
@@ -63,12 +66,13 @@ export function createDriving(world, link) {
     lost = "";
     if (holding()) leave("let-go", driving.chosen); else hands.letGo();
   }
-  function place() {
+  // `where`: { p, yaw }, or none: at a free start.
+  function place(where = {}) {
     if (placing || !link.open) return;
     placing = true;
     driving.live();
     letGo();
-    link.send({ type: "place" });
+    link.send({ type: "place", ...where });
   }
   function remove() {
     const robot = driving.chosen, about = chosen()?.about;
@@ -137,15 +141,17 @@ export function createDriving(world, link) {
     show();
   }
 
-  by("robot").addEventListener("change", (event) => {
+  function choose(robot) {
+    if (robot === driving.chosen) return;
     letGo();
     coming = 0;
-    driving.chosen = Number(event.target.value);
+    driving.chosen = robot;
     update();
-  });
+  }
+  by("robot").addEventListener("change", (event) => choose(Number(event.target.value)));
   by("take").addEventListener("click", take);
   by("let-go").addEventListener("click", letGo);
-  by("place").addEventListener("click", place);
+  by("place").addEventListener("click", () => { if (!driving.beforePlacing()) place(); });
   by("remove").addEventListener("click", remove);
   if (recall("pace")) by("pace").value = recall("pace");
   by("pace").addEventListener("input", () => {

@@ -16,10 +16,13 @@ export function createHistory({ kept_s = KEPT_S, mostBodies = MOST_BODIES } = {}
     bodies = 0;
   }
 
+  // Without what is shown live alone, and would take more than all else.
+  const kept = ({ contacts, scans, imu, ...state }) => state;
+
   // Keeps what `world` is now. Time that begins anew, after a reset, begins a new history.
   function take(world) {
     const moment = { t: world.time_s, robots: new Map(), boxes: world.boxes.map(({ about, now }) => ({ about, now })), gap: interrupted };
-    for (const [id, { about, now }] of world.robots) if (now) moment.robots.set(id, { about, now });
+    for (const [id, { about, now }] of world.robots) if (now) moment.robots.set(id, { about, now: kept(now) });
     const last = moments.length - 1;
     if (last >= 0 && moment.t < moments[last].t) clear();
     else if (last >= 0 && (moment.t === moments[last].t || isClose(last, sizeOf(moment)))) {

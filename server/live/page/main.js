@@ -67,7 +67,7 @@ function showCamerasInstead() {
   document.getElementById("view").replaceWith(document.getElementById("pictures"));
 }
 import("./view_3d.js").then(({ createView }) => {
-  view = createView(panels.seen, panels.chosen, health.refused, showCamerasInstead);
+  view = createView(world, panels.seen, link, driving, panels.chosen, health.refused, showCamerasInstead);
   view.syncObjects();
   return view.shown;
 }).catch((error) => {

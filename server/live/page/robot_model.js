@@ -1,8 +1,10 @@
-// A robot as three.js objects: hull, two tracks or its wheels, four flippers; belts run and flippers turn.
+// A robot as three.js objects: hull, two tracks or its wheels, four flippers; belts run and flippers turn. In the colours that the
+// cameras' pictures have (camera/shading.cpp); only its deck says whose it is, or how it is.
 //
 // Frame of the server: x forward, y left, z up.
 import * as THREE from "/three/build/three.module.js";
 
+const COLOURS = { hull: 0xecba28, side: 0x606268, front: 0xde602c, rear: 0x4670b0, eye: 0xe9efe9 };
 const STRIPE_M = 0.04;   // from lug to lug
 
 function beltTexture() {
@@ -72,17 +74,18 @@ function castShadows(object) {
 
 export function makeRobot(about) {
   const root = new THREE.Group();
-  const hullMaterial = new THREE.MeshLambertMaterial({ color: 0x2f7a60 });
-  const sideMaterial = new THREE.MeshLambertMaterial({ color: 0x73797a, side: THREE.DoubleSide });
-  const armMaterial = new THREE.MeshLambertMaterial({ color: 0xe0b45c, side: THREE.DoubleSide });
+  const hullMaterial = new THREE.MeshLambertMaterial({ color: COLOURS.hull });
+  const deckMaterial = new THREE.MeshLambertMaterial({ color: COLOURS.hull });
+  const sideMaterial = new THREE.MeshLambertMaterial({ color: COLOURS.side, side: THREE.DoubleSide });
+  const [frontMaterial, rearMaterial] = [COLOURS.front, COLOURS.rear].map((color) => new THREE.MeshLambertMaterial({ color, side: THREE.DoubleSide }));
 
   const [x, y, z] = about.body;
   const hull = new THREE.Mesh(new THREE.BoxBufferGeometry(x, y, z), hullMaterial);
   root.add(hull);
   // a light deck that ends in front, so that one sees where it looks
-  const deck = new THREE.Mesh(new THREE.BoxBufferGeometry(0.7 * x, 1.7 * y, 0.02), hullMaterial);
+  const deck = new THREE.Mesh(new THREE.BoxBufferGeometry(0.7 * x, 1.7 * y, 0.02), deckMaterial);
   deck.position.set(0, 0, z / 2);
-  const eye = new THREE.Mesh(new THREE.BoxBufferGeometry(0.05, 0.7 * y, 0.04), new THREE.MeshLambertMaterial({ color: 0xe9efe9 }));
+  const eye = new THREE.Mesh(new THREE.BoxBufferGeometry(0.05, 0.7 * y, 0.04), new THREE.MeshLambertMaterial({ color: COLOURS.eye }));
   eye.position.set(0.42 * x, 0, z / 2 + 0.02);
   root.add(deck, eye);
 
@@ -102,7 +105,7 @@ export function makeRobot(about) {
   for (const caster of about.casters) addBelt(caster, caster.at[1], beltTexture());
   const arms = !flipper ? [] : [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([ahead, side]) => {
     const mount = new THREE.Group(), arm = new THREE.Group(), texture = beltTexture();
-    arm.add(makeBelt(beltOutline(flipper.length, flipper.pivot_radius, flipper.tip_radius), flipper.width, texture, armMaterial));
+    arm.add(makeBelt(beltOutline(flipper.length, flipper.pivot_radius, flipper.tip_radius), flipper.width, texture, ahead > 0 ? frontMaterial : rearMaterial));
     mount.position.set(ahead * flipper.at[0], side * flipper.at[1], flipper.at[2]);
     if (ahead < 0) mount.rotation.z = Math.PI;
     mount.add(arm);
@@ -113,11 +116,11 @@ export function makeRobot(about) {
 
   return {
     root,
-    // `now`: p, q, track_m, flipper. `hull`: its colour.
-    update(now, hull) {
+    // `now`: p, q, track_m, flipper. `deck`: its colour.
+    update(now, deck) {
       root.position.fromArray(now.p);
       root.quaternion.set(now.q[1], now.q[2], now.q[3], now.q[0]);
-      hullMaterial.color.set(hull);
+      deckMaterial.color.set(deck);
       // going forward the lower run stands still on the ground, and the outline goes forward there
       tracks.forEach((texture, side) => { texture.offset.x = (now.track_m[side] / STRIPE_M) % 1; });
       arms.forEach(({ arm, texture, track: side, ahead }, i) => {

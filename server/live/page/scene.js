@@ -1,6 +1,7 @@
 // What never moves: ground, boxes and meshes of the world, from the server's bytes (docs/live-view.md has their layout).
 import * as THREE from "/three/build/three.module.js";
 import { address } from "./connection.js";
+import { contourInterval_m, surfaceOf, terrainMaterial } from "./terrain.js";
 
 const MAGIC = 0x31564e4b;
 const GROUND_M = 400;
@@ -9,28 +10,23 @@ export function colour(name) {
   return new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 }
 
-// Squares of 1 m, to estimate lengths.
-function groundTexture() {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 256;
-  const pen = canvas.getContext("2d");
-  pen.fillStyle = `#${colour("--ground").getHexString()}`;
-  pen.fillRect(0, 0, 256, 256);
-  pen.strokeStyle = `#${colour("--ground-line").getHexString()}`;
-  pen.lineWidth = 5;
-  pen.strokeRect(0, 0, 256, 256);
-  const texture = new THREE.CanvasTexture(canvas);
-  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
-  texture.repeat.set(GROUND_M, GROUND_M);
-  texture.anisotropy = 8;
-  return texture;
+// `heights`: between which colours rise, and contour lines are chosen for. `rises`: whether it has these colours.
+function material(name, heights, rises = true, level = false) {
+  return terrainMaterial({ base: colour(name), high: colour(rises ? "--high" : name), line: colour("--contour"), heights, level });
 }
 
-export function makeBox(size) {
+function lines(geometry) {
+  const edges = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colour("--solid-edge") }));
+  edges.raycast = () => {};   // one points at surfaces
+  return edges;
+}
+
+// A box without `heights` is of one colour.
+export function makeBox(size, heights = null) {
   const geometry = new THREE.BoxBufferGeometry(...size);
-  const box = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color: colour("--solid") }));
+  const box = new THREE.Mesh(geometry, material("--solid", heights ?? [0, 1], heights !== null));
   box.castShadow = box.receiveShadow = true;
-  box.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry), new THREE.LineBasicMaterial({ color: colour("--solid-edge") })));
+  box.add(lines(new THREE.EdgesGeometry(geometry)));
   return box;
 }
 
@@ -45,6 +41,24 @@ export async function fetchScene(path) {
   return answer.arrayBuffer();
 }
 
+// The least and the largest height of all that is no plane.
+function heightsOf(boxes, surfaces) {
+  const all = new THREE.Box3(), corner = new THREE.Vector3(), turn = new THREE.Quaternion();
+  for (const { size, X } of boxes) {
+    turn.set(X[4], X[5], X[6], X[3]);
+    for (let i = 0; i < 8; ++i) {
+      corner.set(...size.map((length, k) => (i >> k & 1 ? length : -length) / 2)).applyQuaternion(turn);
+      all.expandByPoint(corner.add(new THREE.Vector3(X[0], X[1], X[2])));
+    }
+  }
+  for (const { geometry } of surfaces) {
+    geometry.computeBoundingBox();
+    all.union(geometry.boundingBox);
+  }
+  const LEAST_M = 0.05;   // below, colours would make mountains of nothing
+  return all.isEmpty() ? [0, 1] : [all.min.z, Math.max(all.max.z, all.min.z + LEAST_M)];
+}
+
 // In the colours of the moment.
 export function makeScene(bytes) {
   const parent = new THREE.Group(), header = new Uint32Array(bytes, 0, 4);
@@ -54,27 +68,33 @@ export function makeScene(bytes) {
   const floats = (count) => { const out = new Float32Array(bytes, at, count); at += 4 * count; return out; };
   const integers = (count) => { const out = new Uint32Array(bytes, at, count); at += 4 * count; return out; };
 
-  for (let i = 0; i < planes; ++i) {
-    const X = floats(7);
-    const ground = new THREE.Mesh(new THREE.PlaneBufferGeometry(GROUND_M, GROUND_M), new THREE.MeshLambertMaterial({ map: groundTexture() }));
+  const grounds = [];
+  for (let i = 0; i < planes; ++i) grounds.push(floats(7));
+  const fixed = [];
+  for (let i = 0; i < boxes; ++i) fixed.push({ size: floats(3), X: floats(7) });
+  const surfaces = [];
+  for (let i = 0; i < meshes; ++i) {
+    const [vertices, triangles] = integers(2);
+    surfaces.push(surfaceOf(floats(3 * vertices), integers(3 * triangles)));
+  }
+  const heights = heightsOf(fixed, surfaces);
+  for (const X of grounds) {
+    const ground = new THREE.Mesh(new THREE.PlaneBufferGeometry(GROUND_M, GROUND_M), material("--ground", heights, false, Math.hypot(X[4], X[5]) < 1e-6));
     pose(ground, X.subarray(0, 3), X.subarray(3));
     ground.receiveShadow = true;
     parent.add(ground);
   }
-  for (let i = 0; i < boxes; ++i) {
-    const size = floats(3), X = floats(7), box = makeBox(size);
+  for (const { size, X } of fixed) {
+    const box = makeBox(size, heights);
     pose(box, X.subarray(0, 3), X.subarray(3));
     parent.add(box);
   }
-  for (let i = 0; i < meshes; ++i) {
-    const [vertices, triangles] = integers(2);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(floats(3 * vertices), 3));
-    geometry.setIndex(new THREE.BufferAttribute(integers(3 * triangles), 1));
-    geometry.computeVertexNormals();
-    const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color: colour("--solid"), side: THREE.DoubleSide, flatShading: vertices < 3 * triangles / 2 && triangles < 20000 }));
+  for (const { geometry, edges } of surfaces) {
+    const mesh = new THREE.Mesh(geometry, material("--solid", heights));
     mesh.castShadow = mesh.receiveShadow = true;
+    mesh.add(lines(edges));
     parent.add(mesh);
   }
+  parent.userData.contour_m = contourInterval_m(heights);
   return parent;
 }

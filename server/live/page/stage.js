@@ -3,10 +3,12 @@
 import * as THREE from "/three/build/three.module.js";
 import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
 import { createPictureQuality } from "./picture_quality.js";
+import { createPointOfView } from "./point_of_view.js";
 import { colour, fetchScene, makeScene } from "./scene.js";
 
-const MODES = ["follow", "behind", "free"];
 const STILL_MS = 300;
+const SUN_M = [-1, -5, 7];     // from what is followed
+const HIGHEST_M = 1000;   // above all ground
 const QUALITIES = [{ shadows: true, ratio: 2 }, { shadows: false, ratio: 1 }, { shadows: false, ratio: 0.5 }, { shadows: false, ratio: 0.25 }];
 
 export function dispose(object) {
@@ -42,11 +44,17 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
   Object.assign(sun.shadow.camera, { left: -3, right: 3, top: 3, bottom: -3, near: 0.5, far: 20 });
   sun.shadow.bias = -0.001;
   scene.add(sky, sun, sun.target);
+  sun.position.set(...SUN_M);
 
   const quality = createPictureQuality(QUALITIES.length);
-  let mode = "follow", dirty = true, drawn_ms = 0, sharp = true;
-  const at = new THREE.Vector3();
+  let dirty = true, drawn_ms = 0, sharp = true;
+  const view = createPointOfView(camera, controls, () => { dirty = true; });
 
+  // What a line in the scene stands for.
+  function tellScale(contour_m) {
+    const words = document.getElementById("view-scale");
+    if (words) words.textContent = contour_m ? `Grid 1 m, contours ${contour_m < 0.1 ? `${Math.round(1000 * contour_m)} mm` : `${contour_m} m`}` : "";
+  }
   let bytes = null, shows = 0, fixed = new THREE.Group();   // what never moves
   function dress() {   // in light or dark
     scene.background = colour("--sky");
@@ -54,19 +62,13 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
     scene.remove(fixed);
     dispose(fixed);
     scene.add(fixed = bytes ? makeScene(bytes) : new THREE.Group());
+    tellScale(fixed.userData.contour_m);
     dressed();
     dirty = true;
   }
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", dress);
   controls.addEventListener("change", () => { dirty = true; });
   new ResizeObserver(() => { dirty = true; }).observe(canvas.parentElement);
-
-  function choose(next) {
-    mode = next;
-    for (const name of MODES) document.getElementById(`view-${name}`).setAttribute("aria-pressed", `${name === mode}`);
-    dirty = true;
-  }
-  for (const name of MODES) document.getElementById(`view-${name}`).addEventListener("click", () => choose(name));
 
   function fit(most) {
     const width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
@@ -100,8 +102,31 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
     if (quality.took(drawn_ms - began, drawn_ms)) sun.castShadow = renderer.shadowMap.enabled = QUALITIES[quality.level].shadows;
   }
 
+  const caster = new THREE.Raycaster();
+  const first = (objects) => caster.intersectObjects(objects, true).find(({ object }) => object.isMesh && object.visible) ?? null;
   return {
     scene,
+    canvas,
+    camera,
+    chooseView: view.choose,
+    // The first of `objects` and of what never moves, that is seen at a place of the window: {point, object, ...} of three.js, or null.
+    pick(x, y, objects) {
+      const box = canvas.getBoundingClientRect();
+      caster.setFromCamera(new THREE.Vector2((x - box.x) / box.width * 2 - 1, 1 - (y - box.y) / box.height * 2), camera);
+      return first([fixed, ...objects]);
+    },
+    // The highest surface above or below a place, with `objects`, or null.
+    groundAt(x, y, objects) {
+      caster.set(new THREE.Vector3(x, y, HIGHEST_M), new THREE.Vector3(0, 0, -1));
+      return first([fixed, ...objects])?.point ?? null;
+    },
+    // Where one looks, and the direction of the screen's upper edge on the ground, as an angle about z.
+    middle: () => controls.target.clone(),
+    heading() {
+      const ahead = camera.getWorldDirection(new THREE.Vector3());
+      if (Math.hypot(ahead.x, ahead.y) < 1e-6) ahead.set(0, 1, 0).applyQuaternion(camera.quaternion);
+      return Math.atan2(ahead.y, ahead.x);
+    },
     redraw() { dirty = true; },
     // What it shows now as PNG, drawn in full; a promise of a Blob.
     picture() {
@@ -119,20 +144,10 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
         .catch((error) => { if (newest()) complain(`The world cannot be shown: ${error.message}`); });
     },
     // Looks at the place p = [x, y, z] by the mode; behind it is where a robot with the rotation q = [w, x, y, z] has come from.
-    follow(p, [w, x, y, z]) {
-      at.fromArray(p);
-      if (mode !== "free") {
-        camera.position.add(at).sub(controls.target);   // the same look at it, wherever it is
-        controls.target.copy(at);
-      }
-      if (mode === "behind") {
-        const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
-        const reach = 0.8 * camera.position.distanceTo(at);
-        const wanted = new THREE.Vector3(at.x - reach * Math.cos(yaw), at.y - reach * Math.sin(yaw), at.z + 0.6 * reach);
-        camera.position.lerp(wanted, 0.15);
-      }
+    follow(p, q) {
+      const at = view.follow(p, q);
       sun.target.position.copy(at);
-      sun.position.set(at.x - 1, at.y - 5, at.z + 7);
+      sun.position.set(...SUN_M).add(at);
       dirty = true;
     },
     start() {

@@ -1,7 +1,7 @@
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
 export function createWorld() {
   return { you: 0, server: 0, name: "", operatorSilence_s: 0.5, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
-           robots: new Map(), boxes: [] };
+           robots: new Map(), boxes: [], placeable: null };
 }
 
 export function takeHello(world, message) {
@@ -13,6 +13,7 @@ export function takeHello(world, message) {
 }
 
 export function takeInventory(world, message) {
+  world.placeable = message.placeable ?? null;
   const before = world.robots;
   world.robots = new Map(message.robots.map((about) => [about.id, { about, now: before.get(about.id)?.now ?? null }]));
   world.boxes = message.boxes.map((about) => ({ about, now: null }));

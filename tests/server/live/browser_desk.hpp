@@ -46,8 +46,14 @@ struct Desk {
     browser.wait_for("document.getElementById('drive-state').dataset.state === '" + state + "'");
   }
   std::string state_now() { return browser.evaluate("document.getElementById('drive-state').dataset.state"); }
+  void press(std::string_view code) {
+    browser.key(code, true);
+    browser.key(code, false);
+  }
+  // At a free start: Enter, where a place could be pointed at; nothing is left to press where there is no 3D view.
   void place() {
     browser.evaluate("document.getElementById('place').click()");
+    press("Enter");
     state_is("held");
   }
 };

@@ -16,8 +16,7 @@ using nlohmann::json;
 
 TEST_CASE("In a browser: keys held drive the robot, letting go of them stops it, and so does looking away") {
   Desk desk;
-  desk.browser.evaluate("document.getElementById('place').click()");
-  desk.state_is("held");
+  desk.place();
   CHECK(desk.browser.evaluate("document.getElementById('stick').checkVisibility()") == true);
 
   desk.browser.key("KeyW", true);
@@ -75,8 +74,7 @@ TEST_CASE("In a browser: a page that was open shows the world of the server that
 
 TEST_CASE("In a browser: both cameras' pictures are shown, turned by keys, and not fetched by a hidden page") {
   Desk desk;
-  desk.browser.evaluate("document.getElementById('place').click()");
-  desk.state_is("held");
+  desk.place();
   // both are there, whole, and show something: their middle row has many colours
   const char* shown =
       "(() => { const pictures = [...document.querySelectorAll('#pictures img')];"

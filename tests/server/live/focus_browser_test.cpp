@@ -49,6 +49,7 @@ std::string focus(Browser& browser) {
 TEST_CASE("In a browser: after a robot is placed, Space, Enter and a double click place no other") {
   Desk desk;
   click(desk.browser, middle_of(desk.browser, "place"), 2);
+  press(desk.browser, "Enter");
   desk.state_is("held");
   CHECK(focus(desk.browser) == "stick");
   for (const char* code : {"Space", "Enter"}) press(desk.browser, code);
@@ -173,7 +174,8 @@ TEST_CASE("In a browser: the question mark opens the list of keys and closes it"
   desk.browser.wait_for("!document.getElementById('help').open");
   // every key that drives or turns is in it
   const json missing = desk.browser.evaluate(
-      "[...'WASDQERF1234JLIKUOCTP?'].filter((key) => ![...document.querySelectorAll('#help kbd')].some((kbd) => "
+      "[...'WASDQERF1234JLIKUOCTP?56789NBYM,.'].filter((key) => ![...document.querySelectorAll('#help "
+      "kbd')].some((kbd) => "
       "kbd.textContent === key))");
   CHECK(missing == json::array());
 }

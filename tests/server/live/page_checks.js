@@ -38,6 +38,37 @@
     if (document.documentElement.scrollWidth > innerWidth) found.push(`the page is ${document.documentElement.scrollWidth} wide`);
     return found;
   };
+  // The canvas as it was drawn last, once it is drawn: { width, height, data }, RGBA from the top left. A canvas can be read only in the
+  // frame in which it was drawn.
+  window.canvasPixels = () => new Promise((done) => {
+    const canvas = document.getElementById("canvas"), copy = document.createElement("canvas");
+    const look = () => {
+      copy.width = canvas.width;
+      copy.height = canvas.height;
+      const pen = copy.getContext("2d");
+      pen.drawImage(canvas, 0, 0);
+      const picture = pen.getImageData(0, 0, copy.width, copy.height);
+      if (picture.data.some((value, i) => i % 4 !== 3 && value !== 0)) done(picture); else requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  });
+  // The contrast between its 80th and its 20th percentile, between two rows as shares of its height: lines alone make none.
+  window.canvasContrast = async (from, to) => {
+    const { width, height, data } = await canvasPixels(), all = [];
+    for (let i = Math.floor(from * height) * width; i < Math.floor(to * height) * width; ++i) all.push(luminance([data[4 * i], data[4 * i + 1], data[4 * i + 2]]));
+    all.sort((a, b) => a - b);
+    return (all[Math.floor(0.8 * all.length)] + 0.05) / (all[Math.floor(0.2 * all.length)] + 0.05);
+  };
+  // How many of its pixels have that colour of the page's style, within `off` in each channel.
+  window.canvasCount = async (name, off) => {
+    const { data } = await canvasPixels(), pen = document.createElement("canvas").getContext("2d");
+    pen.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    pen.fillRect(0, 0, 1, 1);
+    const wanted = pen.getImageData(0, 0, 1, 1).data;
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) count += [0, 1, 2].every((k) => Math.abs(data[i + k] - wanted[k]) <= off) ? 1 : 0;
+    return count;
+  };
   const sRGB = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
   const luminance = (c) => 0.2126 * sRGB(c[0] / 255) + 0.7152 * sRGB(c[1] / 255) + 0.0722 * sRGB(c[2] / 255);
   const colour = (text) => { const c = text.match(/[\d.]+/g).map(Number); return [c[0], c[1], c[2], c[3] ?? 1]; };
