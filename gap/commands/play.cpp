@@ -15,6 +15,8 @@
 namespace kenaf::gap::commands {
 namespace {
 
+constexpr double kLongest_s = 1e6;  // of a run: about twelve days
+
 // Blocks the signals in this thread and those that it starts: none is interrupted, and one waits for them.
 sigset_t block_signals_to_end() {
   sigset_t signals;
@@ -47,6 +49,9 @@ void add_play_command(CLI::App& program) {
   command->add_option("--report", request.report, "folder that a diagnosis of these runs wrote: marks where the gap is")
       ->type_name("DIR");
   command->add_option("--run", request.run, "file or manoeuvre to show first [the first]");
+  command->add_option("--at", request.at_s, "when to begin in that run, from its first row [its start]")
+      ->type_name("SECONDS")
+      ->check(command_line::number_in(0, kLongest_s));
   command->add_option("--robot", request.robot, "a shipped name or a TOML file [the dataset's, or kenaf]");
   command->add_option("--world", request.world, "a shipped name or an SDF file [each run's own, or flat]");
   command->add_option("--view", options->view, "address of the page, ADDRESS:PORT; port 0: any free one")

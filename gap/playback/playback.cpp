@@ -64,6 +64,12 @@ std::size_t find_run(const Playback& playback, const std::string& name) {
       fmt::format("--run {}: {} contains neither a file nor a manoeuvre of that name", name, playback.name));
 }
 
+double checked_moment(const ListedRun& run, double at_s) {
+  if (at_s >= 0 && at_s <= run.duration_s) return at_s;
+  throw std::runtime_error(
+      fmt::format("--at {}: {} goes from 0 to {:.2f} s; give a time within it", at_s, run.entry.file, run.duration_s));
+}
+
 }  // namespace
 
 Playback load_playback(const PlaybackRequest& request) {
@@ -94,7 +100,9 @@ Playback load_playback(const PlaybackRequest& request) {
   }
 
   if (!request.report.empty()) read_report(request.report, playback);
+  playback.floors = floors_of(dataset.noise, playback.report ? &*playback.report : nullptr);
   if (!request.run.empty()) playback.first = find_run(playback, request.run);
+  if (request.at_s) playback.at_s = checked_moment(playback.runs[playback.first], *request.at_s);
   return playback;
 }
 

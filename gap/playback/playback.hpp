@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gap/playback/played_run.hpp"
+#include "gap/playback/run_gap.hpp"
 
 namespace kenaf::gap::playback {
 
@@ -21,6 +22,7 @@ struct PlaybackRequest {
   std::filesystem::path report;  // folder that `kenaf-gap diagnose` wrote; empty: none
   std::string run;               // file or manoeuvre of the run to begin with; empty: the first
   std::string robot, world;      // instead of the dataset's; empty: its own, for a single file "kenaf" and "flat"
+  std::optional<double> at_s{};  // when to begin, from the first row of the run to begin with; none: at its start
 };
 
 struct ListedRun {
@@ -39,13 +41,15 @@ struct Playback {
   std::vector<physics::WorldDescription> worlds;
   std::vector<ListedRun> runs;  // at least one
   std::size_t first = 0;        // index in runs of the one to begin with
+  double at_s = 0;              // when to begin in it
   std::optional<ReportedPlaces> report;
-  std::vector<std::string> notes;  // on all runs, in sentences
+  std::map<std::string, Floor> floors;  // by column
+  std::vector<std::string> notes;       // on all runs, in sentences
 };
 
 // Reads and checks everything, simulates nothing. A file beside a dataset.toml that lists it gets robot, world and
 // manoeuvre of that dataset. Throws std::exception with words for the user if something cannot be read, the report is
-// of other manoeuvres, or there is no such run.
+// of other manoeuvres, there is no such run, or it ends before at_s.
 Playback load_playback(const PlaybackRequest& request);
 
 // Returns one of its runs, with its simulations. Throws std::exception with words for the user if its file can no
@@ -62,10 +66,10 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 // Keys of playback_json():
 //   format     "kenaf-playback/1"
 //   name       of the folder or file; source: the dataset's
-//   first      number of the run to begin with
+//   first      number of the run to begin with; at_s: when to begin in it, s
 //   robot      {name, and the dimensions of a robot in the live view's `inventory`}
 //   corrected  whether there is a corrected robot
-//   report     {verdict, named: names of effects} or null
+//   report     {verdict, named: names of effects, largest_share: of a phase of any run, 0 to 1} or null
 //   runs       [{file, manoeuvre, world, rows: in the file, duration_s}]
 //   notes      on all runs, sentences
 //
@@ -79,7 +83,16 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //               flipper    four lists in rad: front left, front right, rear left, rear right; positive tip up
 //               track_m    two lists of travel in m: left, right
 //               channels   {column: list in the column's unit}}]
-//   channels  columns that can be drawn: [{column, unit, share of the gap, 0 to 1, if the report has it}]
+//   channels  columns that can be drawn: [{column, unit, wraps: whether it is an angle, share of the gap, 0 to 1, if
+//             the report has it, floor in the unit, floor_from "report", "stated noise" or "resolution"}]
+//   gaps      of each simulation: [{
+//               kind         "nominal", "corrected"
+//               span_s       over which differences are averaged
+//               differences  {column: simulated minus recorded in each span from the start, in the unit}
+//               floors       {column: rms of these in floors}
+//               worst        {t_s, floors: rms over all channels, column: that with most floors, difference: of it,
+//                            difference_floors} or null: the span with most floors over all channels
+//             }]
 //   phases    [{phase, from_s, to_s}], of this run
 //   marks     phases of the report, largest share first: [{manoeuvre, phase, run: file of the repeat whose times these
 //             are, from_s, to_s, share: of the gap in all runs, 0 to 1}]

@@ -10,7 +10,7 @@ namespace {
 
 using live::JsonWriter;
 
-constexpr int kDigits = 4;
+constexpr int kDigits = 4, kFloorDigits = 6;
 
 void write_texts(JsonWriter& out, std::string_view key, const std::vector<std::string>& texts) {
   out.key(key).open('[');
@@ -56,9 +56,36 @@ void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& 
     if (std::ranges::none_of(played.bodies, [&](const PlayedBody& body) { return body.channels.contains(column); }))
       continue;
     out.comma().open('{').key("column").text(column).key("unit").text(channel.unit);
+    out.key("wraps").boolean(channel.angle);
+    const Floor& floor = playback.floors.at(column);
+    out.key("floor").number(floor.value, kFloorDigits).key("floor_from").text(floor_name(floor.from));
     if (playback.report) {
       const auto share = playback.report->channel_share.find(column);
       if (share != playback.report->channel_share.end()) out.key("share").number(share->second);
+    }
+    out.close('}');
+  }
+  out.close(']');
+}
+
+// What the simulations differ by, in means over spans, and where each is worst.
+void write_gaps(JsonWriter& out, const Playback& playback, const PlayedRun& played) {
+  out.key("gaps").open('[');
+  for (std::size_t i = 1; i < played.bodies.size(); ++i) {
+    const PlayedBody& body = played.bodies[i];
+    const RunGap gap = gap_of_run(played.bodies.front(), body, played.times_s, playback.floors);
+    out.comma().open('{').key("kind").text(body.kind).key("span_s").number(kSpan_s);
+    out.key("differences").open('{');
+    for (const auto& [column, differences] : gap.differences) out.key(column).numbers(differences, kFloorDigits);
+    out.close('}').key("floors").open('{');
+    for (const auto& [column, floors] : gap.floors) out.key(column).number(floors);
+    out.close('}').key("worst");
+    if (gap.worst) {
+      out.open('{').key("t_s").number(gap.worst->t_s).key("floors").number(gap.worst->floors);
+      out.key("column").text(gap.worst->column).key("difference").number(gap.worst->difference, kFloorDigits);
+      out.key("difference_floors").number(gap.worst->difference_floors).close('}');
+    } else {
+      out.raw("null");
     }
     out.close('}');
   }
@@ -72,6 +99,7 @@ std::string playback_json(const Playback& playback) {
   JsonWriter out;
   out.open('{').key("format").text("kenaf-playback/1").key("name").text(playback.name);
   out.key("source").text(playback.source).key("first").integer(playback.first);
+  out.key("at_s").number(playback.at_s, kDigits);
   out.key("robot").open('{').key("name").text(playback.robots.nominal.name);
   live::write_dimensions(out, physics::dimensions_of(playback.robots.nominal));
   out.close('}').key("corrected").boolean(playback.robots.corrected.has_value());
@@ -79,6 +107,9 @@ std::string playback_json(const Playback& playback) {
   if (playback.report) {
     out.open('{').key("verdict").text(playback.report->verdict);
     write_texts(out, "named", playback.report->named);
+    double largest = 0;
+    for (const ReportedPhase& phase : playback.report->phases) largest = std::max(largest, phase.share);
+    out.key("largest_share").number(largest, kDigits);
     out.close('}');
   } else {
     out.raw("null");
@@ -105,6 +136,7 @@ std::string played_run_json(const Playback& playback, std::size_t index, const P
   for (const PlayedBody& body : played.bodies) write_body(out, body);
   out.close(']');
   write_channels(out, playback, played);
+  write_gaps(out, playback, played);
   out.key("phases").open('[');
   for (const diagnose::PhaseSpan& phase : played.phases) {
     out.comma().open('{').key("phase").text(phase.name);

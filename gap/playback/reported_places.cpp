@@ -18,6 +18,17 @@ double share_in(const PlacesJson& json) {
   return std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0;
 }
 
+// Adds those that are known and not there yet. A channel that several stages compare has one noise, but the gyro's
+// differences from the pose are of the last stage alone.
+void add_floors(std::map<std::string, double>& floors, const PlacesJson& where) {
+  for (const PlacesJson& channel : where.at("channels")) {
+    const auto floor = channel.find("floor");
+    if (floor == channel.end() || !floor->is_number()) continue;
+    const auto value = floor->get<double>();
+    if (value > 0 && std::isfinite(value)) floors.try_emplace(channel.at("channel").get<std::string>(), value);
+  }
+}
+
 ReportedPhase phase_in(const PlacesJson& json) {
   ReportedPhase phase{json.at("manoeuvre"), json.at("phase"), json.value("run", ""),
                       json.at("from_s"),    json.at("to_s"),  share_in(json.at("share"))};
@@ -41,6 +52,11 @@ ReportedPlaces parse_reported_places(std::string_view report_json) try {
   for (const PlacesJson& phase : where.at("phases")) places.phases.push_back(phase_in(phase));
   for (const PlacesJson& channel : where.at("channels"))
     places.channel_share[channel.at("channel")] = share_in(channel.at("share"));
+  if (const auto stages = json.find("stages"); stages != json.end())
+    for (const PlacesJson& stage : *stages)
+      if (const auto of_stage = stage.find("where"); of_stage != stage.end())
+        add_floors(places.channel_floor, *of_stage);
+  add_floors(places.channel_floor, where);
   return places;
 } catch (const std::exception& error) {
   throw std::runtime_error(fmt::format("is not the report of a diagnosis: {}", error.what()));

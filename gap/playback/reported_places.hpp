@@ -1,4 +1,4 @@
-// The places of the gap in a report.json, as far as playback marks them.
+// The places of the gap in a report.json, as far as playback shows them.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -22,6 +22,8 @@ struct ReportedPlaces {
   std::vector<std::string> named;
   std::vector<ReportedPhase> phases;            // as the report has them: largest share first
   std::map<std::string, double> channel_share;  // by column
+  // By column, in its unit, 1 sigma of a mean over 0.25 s, above 0: of every stage's channels, not of one stage alone.
+  std::map<std::string, double> channel_floor;
 };
 
 // Throws std::runtime_error with words for the user if `report_json` has neither format kenaf-gap-report/1 nor /2. In

@@ -1,4 +1,4 @@
-// Any report's phases have times and shares that can be drawn, or it is said why not.
+// Any report's phases have times and shares, and its channels floors, that can be drawn, or it is said why not.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,5 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto own = gap::playback::phases_of_run(places, phase.run, phase.manoeuvre, {});
     if (own.size() > places.phases.size()) __builtin_trap();
   }
+  for (const auto& [column, floor] : places.channel_floor)
+    if (!(floor > 0 && std::isfinite(floor))) __builtin_trap();
   return 0;
 }

@@ -23,10 +23,11 @@ export function createClock(changed) {
     set(clock.t + passed_s * clock.pace);
     if (clock.playing) requestAnimationFrame(tick);
   }
-  function load(end) {
+  function load(end, at = 0) {
     clock.end = end;
     clock.playing = false;
-    set(0);
+    set(at);
+    clock.playing = false;
   }
   return clock;
 }

@@ -1,13 +1,16 @@
-// Curves of chosen columns over the whole run, real against simulated. The cursor is not drawn here: it moves alone.
+// Curves of chosen columns over time: real against simulated, and below it what the simulations differ by, over the
+// band of the floor. The cursor is not drawn here: it moves alone, and the figures at it are text.
 import { fixed } from "./numbers.js";
+import { indexAt } from "./playback_data.js";
 
-const STRIP_PX = 74, DEG = 180 / Math.PI;
+const VALUES_PX = 56, DIFFERENCES_PX = 44, BETWEEN_PX = 8, DEG = 180 / Math.PI;
 const DASHES = { recorded: [], nominal: [6, 4], corrected: [] };
 const WIDTHS = { recorded: 2.6, nominal: 1.5, corrected: 1.5 };
 const ORDER = ["recorded", "nominal", "corrected"];
+const FLOORS = { report: "report", "stated noise": "stated noise", resolution: "the least that counts" };
 
-export const shownUnit = (unit) => (unit === "rad" ? "\u00b0" : unit);
-export const shownValue = (value, unit) => (unit === "rad" ? value * DEG : value);
+export const shownUnit = (unit) => unit.replace("rad", "\u00b0");
+export const shownValue = (value, unit) => (unit.startsWith("rad") ? value * DEG : value);
 
 export function titleOf(column) {
   const name = column.replace(/_(m|mps|rad|radps|a|v)$/, "");
@@ -18,12 +21,27 @@ export function titleOf(column) {
   return words;
 }
 
+// So many digits that a tenth of the floor shows.
+const digitsOf = (floor) => Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(floor))));
+const signed = (text) => (/[1-9]/.test(text) && !text.startsWith("\u2212") ? `+${text}` : text);
+
+// A difference of a channel in the unit that is shown: "+0.0123 m".
+export function differenceInWords(difference, channel) {
+  return `${signed(fixed(shownValue(difference, channel.unit), digitsOf(shownValue(channel.floor, channel.unit))))} ${shownUnit(channel.unit)}`;
+}
+export const floorsOf = (value) => {
+  const text = value < 9.95 ? value.toFixed(1) : value.toFixed(0);
+  return `${text} ${text === "1.0" ? "floor" : "floors"}`;
+};
+
 // Least and most of 1, 2, 5 times a power of ten around what there is.
-function rangeOf(lines) {
-  let least = Infinity, most = -Infinity;
-  for (const { values } of lines) for (const v of values) if (v !== null) { least = Math.min(least, v); most = Math.max(most, v); }
+function rangeOf(lines, [first, last], least = Infinity, most = -Infinity) {
+  for (const { values } of lines) for (let i = first; i <= last; ++i) {
+    const v = values[i];
+    if (v !== null && v !== undefined) { least = Math.min(least, v); most = Math.max(most, v); }
+  }
   if (least > most) return null;
-  const span = Math.max(most - least, 0.01), power = 10 ** Math.floor(Math.log10(span / 2));
+  const span = Math.max(most - least, 1e-4), power = 10 ** Math.floor(Math.log10(span / 2));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((s) => span / s <= 4);
   const from = Math.floor(least / step + 1e-6), to = Math.ceil(most / step - 1e-6);
   return { least: (to > from ? from : from - 1) * step, most: (to > from ? to : to + 1) * step, step };
@@ -31,69 +49,175 @@ function rangeOf(lines) {
 
 const plain = (value, step) => fixed(value, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
 
-export function createCurves(xOf) {
-  const canvas = document.getElementById("curves"), pen = canvas.getContext("2d");
+// Simulated minus recorded at every time.
+function differencesOf(run, channel, body) {
+  const recorded = run.bodies[0].channels[channel.column], simulated = body.channels[channel.column];
+  if (!recorded || !simulated) return null;
+  return simulated.map((value, i) => {
+    if (value === null || recorded[i] === null) return null;
+    const way = value - recorded[i];
+    return shownValue(channel.wraps ? Math.atan2(Math.sin(way), Math.cos(way)) : way, channel.unit);
+  });
+}
 
-  function linesOf(run, channel, shown) {
-    const command = run.bodies[0].channels[`cmd_${channel.column}`];
-    const lines = ORDER.flatMap((kind) => {
-      const values = run.bodies.find((body) => body.kind === kind)?.channels[channel.column];
-      return values && shown(kind) ? [{ kind, values: values.map((v) => (v === null ? null : shownValue(v, channel.unit))) }] : [];
-    });
-    return command ? [{ kind: "command", values: command }, ...lines] : lines;
+function span(className, text, kind = "") {
+  const made = document.createElement("span");
+  made.className = className;
+  made.textContent = text;
+  if (kind) made.dataset.kind = kind;
+  return made;
+}
+
+export function createCurves(xOf, zoom) {
+  const parent = document.getElementById("curves");
+  let run = null, strips = [];   // of each channel: what is drawn, its canvas and its readings
+
+  function load(next) {
+    run = next;
+    strips = [];
+    parent.replaceChildren();
   }
 
-  function draw(run, channels, shown) {
-    const ratio = devicePixelRatio, width = canvas.clientWidth, height = Math.max(1, channels.length) * STRIP_PX;
+  // The figure of a channel: a caption with what is read at the cursor, and the canvas.
+  function makeStrip(channel) {
+    const figure = document.createElement("figure"), caption = document.createElement("figcaption"), canvas = document.createElement("canvas");
+    figure.className = "curve";
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", `${titleOf(channel.column)}: recorded and simulated, and their difference with its floor`);
+    const floor = shownValue(channel.floor, channel.unit), about = [`floor \u00b1${fixed(floor, digitsOf(floor))} (${FLOORS[channel.floor_from]})`];
+    if (channel.share > 0.005) about.push(`${Math.round(channel.share * 100)} % of the gap in all runs`);
+    const readings = span("readings", "");
+    caption.append(span("title", `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`), span("soft", about.join(", ")), readings);
+    figure.append(caption, canvas);
+    parent.append(figure);
+    return { channel, canvas, readings };
+  }
+
+  function fill(strip, shown) {
+    const { channel } = strip, command = run.bodies[0].channels[`cmd_${channel.column}`];
+    const bodies = ORDER.map((kind) => run.bodies.find((body) => body.kind === kind)).filter((body) => body?.channels[channel.column] && shown(body.kind));
+    strip.lines = bodies.map((body) => ({ kind: body.kind, values: body.channels[channel.column].map((v) => (v === null ? null : shownValue(v, channel.unit))) }));
+    if (command) strip.lines.unshift({ kind: "command", values: command.map((v) => (v === null ? null : shownValue(v, channel.unit))) });
+    strip.differences = bodies.filter((body) => body.kind !== "recorded").flatMap((body) => {
+      const values = differencesOf(run, channel, body), gap = run.gaps.find((each) => each.kind === body.kind);
+      const means = gap?.differences[channel.column]?.map((v) => (v === null ? null : shownValue(v, channel.unit)));
+      return values && means ? [{ kind: body.kind, values, means, span_s: gap.span_s }] : [];
+    });
+    strip.floor = shownValue(channel.floor, channel.unit);
+  }
+
+  function draw(next, channels, shown) {
+    if (next !== run || channels.length !== strips.length || channels.some((channel, i) => channel !== strips[i].channel)) {
+      load(next);
+      strips = channels.map(makeStrip);
+    }
+    const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
+    for (const strip of strips) {
+      fill(strip, shown);
+      drawStrip(strip, colour);
+    }
+  }
+
+  function drawStrip({ channel, canvas, lines, differences, floor }, colour) {
+    const ratio = devicePixelRatio, width = canvas.clientWidth, height = VALUES_PX + (differences.length ? BETWEEN_PX + DIFFERENCES_PX : 0);
     canvas.style.height = `${height}px`;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
+    const pen = canvas.getContext("2d"), left = xOf(zoom.from), right = xOf(zoom.to);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";
     pen.lineJoin = "round";
-    channels.forEach((channel, n) => {
-      const top = n * STRIP_PX + 18, bottom = (n + 1) * STRIP_PX - 6;
-      const lines = linesOf(run, channel, shown), range = rangeOf(lines);
-      pen.fillStyle = colour("--ink");
-      pen.textAlign = "left";
-      pen.textBaseline = "middle";
-      const title = `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`;
-      pen.fillText(title, xOf(0) + 8, top - 9);
-      if (channel.share > 0.005) {
-        const after = xOf(0) + 8 + pen.measureText(title).width + 10;
-        pen.fillStyle = colour("--soft");
-        pen.fillText(`${Math.round(channel.share * 100)} % of the gap in all runs`, after, top - 9);
-      }
-      if (!range) return;
+    pen.textBaseline = "middle";
+    const seen = [Math.max(0, indexAt(run.t_s, zoom.from) - 1), Math.min(run.t_s.length - 1, indexAt(run.t_s, zoom.to) + 1)];
+
+    // A grid with numbers at its ends; then what `trace` draws, which may not leave it.
+    function frame(range, top, bottom, trace) {
       const y = (v) => bottom - (v - range.least) / (range.most - range.least) * (bottom - top);
       pen.strokeStyle = colour("--line");
       pen.lineWidth = 1;
-      pen.textAlign = "right";
       for (let v = range.least; v <= range.most + range.step / 2; v += range.step) {
         pen.beginPath();
-        pen.moveTo(xOf(0), y(v));
-        pen.lineTo(xOf(run.t_s[run.t_s.length - 1]), y(v));
+        pen.moveTo(left, y(v));
+        pen.lineTo(right, y(v));
         pen.stroke();
       }
       pen.fillStyle = colour("--soft");
-      for (const v of [range.least, range.most]) pen.fillText(plain(v, range.step), xOf(0) - 6, y(v));
+      pen.textAlign = "right";
+      for (const v of [range.least, range.most]) pen.fillText(plain(v, range.step), left - 6, y(v));
+      pen.save();
+      pen.beginPath();
+      pen.rect(left, top - 3, right - left, bottom - top + 6);
+      pen.clip();
+      trace(y);
+      pen.restore();
+    }
+    function line(count, time, value, y) {
+      pen.beginPath();
+      let down = false;
+      for (let i = 0; i < count; ++i) {
+        const v = value(i);
+        if (v === null || v === undefined) { down = false; continue; }
+        if (down) pen.lineTo(xOf(time(i)), y(v)); else pen.moveTo(xOf(time(i)), y(v));
+        down = true;
+      }
+      pen.stroke();
+    }
+    const seenLine = (values, y) => line(seen[1] - seen[0] + 1, (i) => run.t_s[seen[0] + i], (i) => values[seen[0] + i], y);
+
+    const range = rangeOf(lines, seen);
+    if (range) frame(range, 6, VALUES_PX - 6, (y) => {
       for (const { kind, values } of lines) {
         pen.strokeStyle = kind === "command" ? colour("--soft") : colour(`--${kind}`);
         pen.lineWidth = WIDTHS[kind] ?? 1;
         pen.setLineDash(DASHES[kind] ?? [2, 3]);
-        pen.beginPath();
-        let down = false;
-        values.forEach((v, i) => {
-          if (v === null) { down = false; return; }
-          if (down) pen.lineTo(xOf(run.t_s[i]), y(v)); else pen.moveTo(xOf(run.t_s[i]), y(v));
-          down = true;
-        });
-        pen.stroke();
+        seenLine(values, y);
       }
       pen.setLineDash([]);
     });
+
+    // the floor as a band, single samples pale, and the means that are counted in floors
+    const differenceRange = differences.length ? rangeOf(differences, seen, -1.2 * floor, 1.2 * floor) : null;
+    if (differenceRange) frame(differenceRange, VALUES_PX + BETWEEN_PX, height - 6, (y) => {
+      pen.fillStyle = colour("--floor");
+      const high = Math.max(2, y(-floor) - y(floor));
+      pen.fillRect(left, y(0) - high / 2, right - left, high);
+      for (const { kind, values, means, span_s } of differences) {
+        pen.strokeStyle = colour(`--${kind}`);
+        pen.lineWidth = 1;
+        pen.globalAlpha = 0.4;
+        seenLine(values, y);
+        pen.globalAlpha = 1;
+        pen.lineWidth = WIDTHS[kind];
+        pen.setLineDash(DASHES[kind]);
+        line(means.length, (i) => Math.min((i + 0.5) * span_s, run.t_s[run.t_s.length - 1]), (i) => means[i], y);
+        pen.setLineDash([]);
+      }
+      pen.fillStyle = colour("--ink");
+      pen.textAlign = "left";
+      pen.lineWidth = 3;
+      pen.strokeStyle = colour("--panel");
+      for (const put of ["strokeText", "fillText"]) pen[put]("minus recorded", left + 8, VALUES_PX + BETWEEN_PX + 6);
+    });
   }
-  return { draw };
+
+  // What the curves are worth at t.
+  function read(t) {
+    if (!run) return;
+    const i = indexAt(run.t_s, t);
+    for (const { readings, lines, differences, floor } of strips) {
+      readings.replaceChildren(...(lines ?? []).map(({ kind, values }) => {
+        const value = values[i] ?? null, off = differences.find((each) => each.kind === kind), digits = digitsOf(floor);
+        let text = value === null ? "\u2013" : fixed(value, digits);
+        const difference = off?.values[i] ?? null, mean = off?.means[Math.floor(t / off.span_s + 1e-9)] ?? null;
+        if (difference !== null) text += ` (${signed(fixed(difference, digits))}${mean === null ? "" : `, ${floorsOf(Math.abs(mean) / floor)}`})`;
+        const reading = span("reading", text, kind);
+        reading.title = kind === "command" ? "command" : off ? `${kind}: value (minus recorded, its mean over ${off.span_s} s in floors)` : kind;
+        reading.prepend(span("swatch", "", kind));
+        return reading;
+      }));
+    }
+  }
+
+  return { draw, read, parts: () => strips.map(({ canvas, channel, readings }) => ({ canvas, title: `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`, readings: [...readings.children].map((reading) => `${reading.dataset.kind} ${reading.textContent}`).join("; ") })) };
 }

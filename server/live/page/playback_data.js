@@ -38,10 +38,10 @@ export function indexAt(times, t) {
 }
 
 const blend = (a, b, f) => (a === null || b === null || a === undefined || b === undefined ? (f < 0.5 ? a : b) ?? null : a + (b - a) * f);
+const turn = (angle) => Math.atan2(Math.sin(angle), Math.cos(angle));
 const blendAngle = (a, b, f) => {
   if (a === null || b === null || a === undefined || b === undefined) return (f < 0.5 ? a : b) ?? null;
-  const way = Math.atan2(Math.sin(b - a), Math.cos(b - a));
-  return a + way * f;
+  return a + turn(b - a) * f;
 };
 
 // Turned z, y, x: w, x, y, z.
@@ -65,15 +65,30 @@ export function stateAt(run, body, t) {
   };
 }
 
-// Recorded minus simulated: distance and place in mm, angles in degrees.
+// Simulated minus recorded: distance and place in mm, angles in degrees.
 export function differenceOf(recorded, simulated) {
   if (!recorded || !simulated) return null;
-  const place_mm = recorded.p.map((value, i) => 1000 * (value - simulated.p[i]));
-  const angles_deg = recorded.angles.map((value, i) => {
-    const way = value - simulated.angles[i];
-    return DEG * Math.atan2(Math.sin(way), Math.cos(way));
-  });
+  const place_mm = simulated.p.map((value, i) => 1000 * (value - recorded.p[i]));
+  const angles_deg = simulated.angles.map((value, i) => DEG * turn(value - recorded.angles[i]));
   return { distance_mm: Math.hypot(...place_mm), place_mm, angles_deg };
+}
+
+const times = ([aw, ax, ay, az], [bw, bx, by, bz]) => [aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by,
+  aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw];
+
+// The simulated state with `factor` times its deviation from the recorded one: in place, in rotation (at most half a
+// turn about the same axis) and in its flippers. Null where there is nothing to deviate from.
+export function exaggerated(recorded, simulated, factor) {
+  if (factor === 1 || !simulated) return simulated;
+  if (!recorded) return null;
+  const [w, x, y, z] = times([recorded.q[0], ...recorded.q.slice(1).map((v) => -v)], simulated.q), sine = Math.hypot(x, y, z);
+  const half = Math.min(Math.PI / 2, factor * Math.atan2(sine, Math.abs(w))), scale = sine > 1e-9 ? Math.sign(w || 1) * Math.sin(half) / sine : 0;
+  return {
+    ...simulated,
+    p: simulated.p.map((value, i) => recorded.p[i] + factor * (value - recorded.p[i])),
+    q: times(recorded.q, [Math.cos(half), x * scale, y * scale, z * scale]),
+    flipper: simulated.flipper.map((value, i) => recorded.flipper[i] + Math.max(-Math.PI, Math.min(Math.PI, factor * (value - recorded.flipper[i])))),
+  };
 }
 
 export const LABELS = {

@@ -25,7 +25,7 @@ export function createReadings() {
     table.replaceChildren();
     cells = [];
     if (!simulated.length) return;
-    table.createCaption().textContent = "Recorded minus simulated";
+    table.createCaption().textContent = "Simulated minus recorded";
     const head = table.createTHead().insertRow();
     head.append(document.createElement("th"), ...simulated.map((body) => {
       const name = document.createElement("th");

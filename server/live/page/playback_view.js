@@ -1,6 +1,6 @@
 // The recorded robot and its simulations in the world of their run, and the paths of all on the floor.
 import * as THREE from "/three/build/three.module.js";
-import { stateAt } from "./playback_data.js";
+import { exaggerated, stateAt } from "./playback_data.js";
 import { makeRobot } from "./robot_model.js";
 import { colour } from "./scene.js";
 import { createStage, dispose } from "./stage.js";
@@ -24,9 +24,20 @@ function tint(root, hue) {
   });
 }
 
+// The path of a body, with `factor` times its deviation from the recorded one.
+function pathOf(run, body, factor) {
+  const recorded = run.bodies[0].pose;
+  if (factor === 1 || body.pose === recorded) return body.pose;
+  const far = (name) => body.pose[name].map((value, i) => {
+    const from = recorded?.[name][i] ?? null;
+    return value === null || from === null ? null : from + factor * (value - from);
+  });
+  return { x: far("x"), y: far("y"), z: far("z") };
+}
+
 // The path as a flat strip `lower_m` under the body's middle.
-function makeRibbon(run, body, hue, lower_m) {
-  const position = [], index = [], { x, y, z } = body.pose;
+function makeRibbon(run, body, hue, lower_m, factor) {
+  const position = [], index = [], { x, y, z } = pathOf(run, body, factor);
   const half_m = (body.kind === "recorded" ? BROAD_M : NARROW_M) / 2;
   let last = null;   // of the strip so far
   run.t_s.forEach((_, i) => {
@@ -50,7 +61,8 @@ function makeRibbon(run, body, hue, lower_m) {
 // `shown(kind)`: whether that body is to be seen; "paths": the strips.
 export function createPlaybackView(list, shown, complain) {
   const stage = createStage({ complain, dressed: rebuild, eye: EYE, sharpens: true });
-  let run = null, bodies = [], t = 0;
+  let run = null, bodies = [], t = 0, factor = 1;
+  const ribbonOf = ({ body, hue, lower_m }) => makeRibbon(run, body, hue, lower_m, factor);
 
   function rebuild() {
     for (const { model, ribbon } of bodies) {
@@ -61,9 +73,10 @@ export function createPlaybackView(list, shown, complain) {
       const model = makeRobot(list.robot), hue = colour(`--${body.kind}`);
       if (body.kind !== "recorded") tint(model.root, hue);
       // a little higher each, so that none hides in another
-      const ribbon = makeRibbon(run, body, hue, list.robot.ride_height - 0.006 - 0.003 * i);
-      stage.scene.add(model.root, ribbon);
-      return { body, model, ribbon, hue };
+      const made = { body, model, hue, lower_m: list.robot.ride_height - 0.006 - 0.003 * i };
+      made.ribbon = ribbonOf(made);
+      stage.scene.add(model.root, made.ribbon);
+      return made;
     });
     update(t);
   }
@@ -71,8 +84,9 @@ export function createPlaybackView(list, shown, complain) {
   function update(now_s) {
     t = now_s;
     let followed = null;
+    const recorded = run ? stateAt(run, run.bodies[0], t) : null;
     for (const { body, model, ribbon, hue } of bodies) {
-      const state = stateAt(run, body, t);
+      const state = body.kind === "recorded" ? recorded : exaggerated(recorded, stateAt(run, body, t), factor);
       model.root.visible = Boolean(state) && shown(body.kind);
       ribbon.visible = shown("paths") && shown(body.kind);
       if (!state) continue;
@@ -86,6 +100,18 @@ export function createPlaybackView(list, shown, complain) {
   stage.start();
   return {
     update,
+    picture: stage.drawn,
+    // Draws `times` the deviations of the simulations.
+    exaggerate(times) {
+      factor = times;
+      for (const each of bodies) {
+        stage.scene.remove(each.ribbon);
+        dispose(each.ribbon);
+        each.ribbon = ribbonOf(each);
+        stage.scene.add(each.ribbon);
+      }
+      update(t);
+    },
     load(next, scenePath) {
       run = next;
       t = 0;

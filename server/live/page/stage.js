@@ -102,6 +102,13 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
     if (quality.took(drawn_ms - began, drawn_ms)) sun.castShadow = renderer.shadowMap.enabled = QUALITIES[quality.level].shadows;
   }
 
+  function drawn() {
+    fit(QUALITIES[0].ratio);
+    renderer.render(scene, camera);
+    dirty = true;
+    return canvas;
+  }
+
   const caster = new THREE.Raycaster();
   const first = (objects) => caster.intersectObjects(objects, true).find(({ object }) => object.isMesh && object.visible) ?? null;
   return {
@@ -128,13 +135,10 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
       return Math.atan2(ahead.y, ahead.x);
     },
     redraw() { dirty = true; },
-    // What it shows now as PNG, drawn in full; a promise of a Blob.
-    picture() {
-      fit(QUALITIES[0].ratio);
-      renderer.render(scene, camera);   // just before it is read: afterwards a browser may have cleared it
-      dirty = true;
-      return new Promise((done) => canvas.toBlob(done, "image/png"));
-    },
+    // The canvas as it is now, drawn in full, to be copied at once: the browser clears it afterwards.
+    drawn,
+    // The same as PNG; a promise of a Blob.
+    picture: () => new Promise((done) => drawn().toBlob(done, "image/png")),
     // Shows that world, and from now on none before it; `path` is where the server has its bytes.
     show(path) {
       const number = ++shows, newest = () => number === shows;

@@ -201,6 +201,61 @@ TEST_CASE("A report's phases belong to their run, or to its one repeat that the 
   CHECK_THROWS_WITH(parse_reported_places(backwards), Catch::Contains("from 0.8 s to 0 s"));
 }
 
+TEST_CASE("Floors are the report's, else the dataset's noise, else the least that counts") {
+  const ReportedPlaces places =
+      parse_reported_places(R"({"format": "kenaf-gap-report/2", "verdict": "none", "named": [],
+    "where": {"channels": [{"channel": "x_m", "share": 0.7, "floor": 0.004}, {"channel": "y_m", "share": 0, "floor": null},
+                           {"channel": "z_m", "share": 0, "floor": 0}], "phases": []},
+    "stages": [{"where": {"channels": [{"channel": "track_left_mps", "share": 1, "floor": 0.02}], "phases": []}}]})");
+  const std::map<std::string, double> noise{{"x_m", 0.1}, {"y_m", 0.003}, {"z_m", 1e-9}};
+  const auto floors = floors_of(noise, &places);
+  CHECK(floors.at("x_m").value == 0.004);
+  CHECK(floors.at("x_m").from == FloorFrom::report);
+  CHECK(floors.at("track_left_mps").value == 0.02);  // of another stage than the one with most of the gap
+  CHECK(floors.at("y_m").value == 0.003);
+  CHECK(floors.at("y_m").from == FloorFrom::stated_noise);
+  CHECK(floors.at("z_m").value > 1e-9);  // a noise below what a diagnosis counts is no floor
+  CHECK(floors.at("z_m").from == FloorFrom::resolution);
+  CHECK(floors_of({}, nullptr).at("x_m").from == FloorFrom::resolution);
+}
+
+TEST_CASE("A run's gap is counted in floors, by means over quarters of a second, and is worst where all are together") {
+  // one second at 100 Hz: x is off by 20 mm in the third quarter and by 10 mm in the fourth; yaw by 2 pi - 6.2 across
+  // pi
+  PlayedBody recorded, simulated;
+  PlayedTimes times;
+  const double across = 2 * std::numbers::pi - 6.2;
+  for (int i = 0; i < 100; ++i) {
+    times.push_back(0.01 * i);
+    recorded.channels["x_m"].push_back(1);
+    simulated.channels["x_m"].push_back(i < 50 ? 1 : i < 75 ? 1.02 : 1.01);
+    recorded.channels["yaw_rad"].push_back(3.1);
+    simulated.channels["yaw_rad"].push_back(-3.1);
+    recorded.channels["z_m"].push_back(kNotMeasured);
+    simulated.channels["z_m"].push_back(0);
+  }
+  simulated.channels["y_m"] = simulated.channels["x_m"];  // was not recorded
+  std::map<std::string, Floor> floors = floors_of({}, nullptr);
+  floors["x_m"].value = 0.005;
+  floors["yaw_rad"].value = across / 2;
+  const RunGap gap = gap_of_run(recorded, simulated, times, floors);
+  REQUIRE(gap.differences.size() == 2);
+  const std::vector<double>& x = gap.differences.at("x_m");
+  REQUIRE(x.size() == 4);
+  for (const auto& [span, expected_m] : {std::pair{0, 0.0}, {1, 0.0}, {2, 0.02}, {3, 0.01}})
+    CHECK(x[static_cast<std::size_t>(span)] == Approx(expected_m).margin(1e-12));
+  CHECK(gap.floors.at("x_m") == Approx(std::sqrt(5)));  // 0, 0, 4 and 2 floors
+  CHECK(gap.floors.at("yaw_rad") == Approx(2));
+  REQUIRE(gap.worst);
+  CHECK(gap.worst->t_s == 0.625);
+  CHECK(gap.worst->floors == Approx(std::sqrt(10)));  // 4 floors of x and 2 of yaw
+  CHECK(gap.worst->column == "x_m");
+  CHECK(gap.worst->difference == Approx(0.02));
+  CHECK(gap.worst->difference_floors == Approx(4));
+  // nothing in common: no worst moment
+  CHECK_FALSE(gap_of_run(recorded, PlayedBody(), times, floors).worst);
+}
+
 TEST_CASE("A page is told a run's poses, times and marks as they were recorded") {
   const Recorded recorded;
   const Playback playback = recorded.load();
@@ -210,6 +265,8 @@ TEST_CASE("A page is told a run's poses, times and marks as they were recorded")
   CHECK(list["runs"][1] ==
         json{{"file", "b.csv"}, {"manoeuvre", "go"}, {"world", "flat"}, {"rows", 200}, {"duration_s", 1.99}});
   CHECK(list["report"]["named"][0] == "drive_lag");
+  CHECK(list["report"]["largest_share"] == 0.75);
+  CHECK(list["at_s"] == 0);
   CHECK(list["robot"]["flipper"]["length"] > 0);
 
   const json run = json::parse(played_run_json(playback, 0, prepare_run(playback, 0)));
@@ -236,6 +293,18 @@ TEST_CASE("A page is told a run's poses, times and marks as they were recorded")
   CHECK(run["phases"][0]["phase"] == "stand");
   CHECK(run["phases"][0]["to_s"].get<double>() == Approx(0.5).margin(0.051));
   CHECK(run["channels"][0].contains("column"));
+  CHECK(run["channels"][0]["floor"] > 0);
+  CHECK(run["channels"][0]["floor_from"] == "resolution");  // the report of version 1 has none
+  // the nominal robot goes 0.1 m/s faster, so it is farthest ahead in the last quarter of a second
+  REQUIRE(run["gaps"].size() == 1);
+  const json& gap = run["gaps"][0];
+  CHECK(gap["kind"] == "nominal");
+  CHECK(gap["span_s"] == 0.25);
+  CHECK(gap["differences"]["x_m"].size() == 8);
+  CHECK(gap["differences"]["x_m"][0].get<double>() == Approx(0).margin(0.002));
+  CHECK(gap["worst"]["t_s"] == 1.875);
+  CHECK(gap["worst"]["column"] == "x_m");
+  CHECK(gap["worst"]["difference"].get<double>() == Approx(0.137).margin(0.015));  // 1.37 s after the start
   CHECK(run["notes"].empty());
 }
 
@@ -280,6 +349,7 @@ TEST_CASE("A corrected robot beside the nominal one, and a file that its dataset
   const Playback playback = load_playback({recorded.folder / "a.csv", recorded.folder / "report", "", "", ""});
   CHECK(playback.runs.size() == 1);
   CHECK(playback.runs[0].entry.manoeuvre == "go");
+  CHECK(load_playback({recorded.folder.path(), "", "blind", "", "", 1.5}).at_s == 1.5);
   const json run = json::parse(played_run_json(playback, 0, prepare_run(playback, 0)));
   REQUIRE(run["bodies"].size() == 3);
   CHECK(run["bodies"][2]["kind"] == "corrected");
@@ -381,6 +451,8 @@ TEST_CASE("kenaf-gap play says what is wrong, and ends when it is told to") {
       {"play . --report .", "there is no report.json"},
       {"play . --report other", "covers none of the manoeuvres"},
       {"play . --run d.csv", "contains neither a file nor a manoeuvre of that name"},
+      {"play . --at 5", "--at 5: a.csv goes from 0 to 1.99 s"},
+      {"play . --at -1", "must be a number from 0"},
       {"play . --robot nobody", "nobody"},
       {"play . --view here", "ADDRESS:PORT"},
       {"play . --view off", "nothing to do"},

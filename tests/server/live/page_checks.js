@@ -71,7 +71,10 @@
   };
   const sRGB = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
   const luminance = (c) => 0.2126 * sRGB(c[0] / 255) + 0.7152 * sRGB(c[1] / 255) + 0.0722 * sRGB(c[2] / 255);
-  const colour = (text) => { const c = text.match(/[\d.]+/g).map(Number); return [c[0], c[1], c[2], c[3] ?? 1]; };
+  const colour = (text) => {
+    const c = text.match(/[\d.]+/g).map(Number), scale = text.startsWith("color(srgb") ? 255 : 1;   // of a mixed colour, from 0 to 1
+    return [c[0] * scale, c[1] * scale, c[2] * scale, c[3] ?? 1];
+  };
   const over = (c, back) => [0, 1, 2].map((i) => c[i] * c[3] + back[i] * (1 - c[3]));
   const backOf = (e) => {
     const layers = [];

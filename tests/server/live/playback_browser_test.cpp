@@ -18,7 +18,7 @@ using nlohmann::json;
 
 // Two phases of one run; that of the other manoeuvre is not shown with it.
 constexpr const char* kPlacesReport = R"({"format": "kenaf-gap-report/1", "verdict": "named", "named": ["drive_lag"],
-  "where": {"channels": [{"channel": "track_left_mps", "share": 0.6}],
+  "where": {"channels": [{"channel": "track_left_mps", "share": 0.6, "floor": 0.002}],
             "phases": [{"manoeuvre": "straight", "run": "run-000.csv", "phase": "cruise", "from_s": 1, "to_s": 4, "share": 0.5},
                        {"manoeuvre": "straight", "run": "run-000.csv", "phase": "speed change", "from_s": 0.5, "to_s": 1, "share": 0.3},
                        {"manoeuvre": "turn-in-place", "run": "run-001.csv", "phase": "turn", "from_s": 1, "to_s": 4, "share": 0.2}]}})";
@@ -117,8 +117,9 @@ TEST_CASE("In a browser: a recorded run plays beside its simulations, and the ti
       "100); "
       "at('pointermove', r.left + 58 + (r.width - 70) / 2); at('pointerup', r.left + 300); })()");
   CHECK(desk.time_s() == Approx(3).margin(0.02));
-  // half a second of lag at 0.2 m/s or more: the recorded robot is behind the nominal one, and with the corrected one
-  CHECK(desk.difference(1, 1) < -50);
+  // half a second of lag at 0.2 m/s or more: the nominal robot is ahead of the recorded one, and the corrected one with
+  // it
+  CHECK(desk.difference(1, 1) > 50);
   CHECK(std::abs(desk.difference(0, 2)) < 1);
   CHECK(browser.evaluate("document.getElementById('now-phase').textContent") == "cruise");
   // a mark says what it is to whoever comes to it by the keyboard
@@ -138,6 +139,108 @@ TEST_CASE("In a browser: a recorded run plays beside its simulations, and the ti
   CHECK(browser.evaluate("[...document.querySelectorAll('button, select, input')].filter((e) => e.checkVisibility() && "
                          "!(e.textContent.trim() || e.ariaLabel || e.labels?.length)).length") == 0);
   browser.screenshot(desk.pictures / "playback-phone-dark.png");
+  for (const std::string& complaint : browser.complaints()) UNSCOPED_INFO(complaint);
+  CHECK(browser.complaints().empty());
+}
+
+TEST_CASE("In a browser: a playback shows the gap, where it is worst and how large it is there") {
+  PlaybackDesk desk;
+  Browser& browser = desk.browser;
+  browser.wait_for("document.getElementById('canvas').width > 300");
+  const auto text = [&](const std::string& id) {
+    return browser.evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
+  };
+  const auto shown = [&] {
+    return browser.evaluate("[...document.querySelectorAll('.curve .title')].map((e) => e.textContent)");
+  };
+
+  // lag alone: x, travel and speed differ, of left and right one; y, z and the angles do not
+  CHECK(shown().size() == 3);
+  CHECK(browser.evaluate("document.querySelectorAll('.curve canvas').length") == 3);
+  const std::string curves = shown().dump();
+  CHECK_THAT(curves, Catch::Contains("x, m") && Catch::Contains("speed, m/s"));
+  CHECK(
+      browser.evaluate("document.querySelector('#channel-list label').textContent").get<std::string>().find("floors") !=
+      std::string::npos);
+
+  // the button leads to the worst moment, and the words say how large it is: at both ends of the drive the lag is all
+  const std::string worst = text("worst-words");
+  CHECK_THAT(worst, Catch::StartsWith("Worst at ") && Catch::Contains(" off, ") && Catch::Contains("floors rms"));
+  desk.press("End");
+  browser.evaluate("document.getElementById('worst').click()");
+  CHECK(worst.find(
+            "Worst at " +
+            browser.evaluate("Number(document.getElementById('ruler').ariaValueNow).toFixed(2)").get<std::string>() +
+            " s") == 0);
+
+  // the readings follow the cursor: at rest all are the same, at the worst moment the nominal one is off
+  const auto readings = [&] {
+    return browser.evaluate("document.querySelector('.readings').textContent").get<std::string>();
+  };
+  const std::string at_worst = readings();
+  CHECK_THAT(at_worst, Catch::Contains("floors)"));
+  desk.press("Home");
+  CHECK(readings() != at_worst);
+
+  // and the pointer, where there is one, until it leaves
+  const std::string at_home = readings();
+  browser.evaluate(
+      "(() => { const lanes = document.getElementById('lanes'), r = lanes.getBoundingClientRect(); const at = (type, "
+      "x) "
+      "=> lanes.dispatchEvent(new PointerEvent(type, {clientX: x, clientY: r.top + 5, pointerType: 'mouse', bubbles: "
+      "true})); at('pointermove', r.left + 58 + (r.width - 70) / 4); })()");
+  CHECK(readings() != at_home);
+  CHECK(browser.evaluate("document.getElementById('hover').dataset.time") == "1.50 s");
+  CHECK(desk.time_s() == 0);
+  browser.evaluate("document.getElementById('lanes').dispatchEvent(new PointerEvent('pointerleave'))");
+  CHECK(readings() == at_home);
+
+  // half of the time around the cursor, a quarter, and the whole run again
+  browser.evaluate("document.getElementById('worst').click()");
+  const auto ticks = [&] {
+    return browser.evaluate("document.getElementById('ruler').textContent").get<std::string>();
+  };
+  const std::string whole = ticks();
+  const double before_px = desk.cursor_px();
+  browser.evaluate("document.getElementById('zoom-in').click()");
+  browser.evaluate("document.getElementById('zoom-in').click()");
+  CHECK(ticks() != whole);
+  CHECK(std::abs(desk.cursor_px() - before_px) < 1000);
+  desk.press("Home");  // a cursor that leaves the part that is shown takes it along
+  CHECK(desk.cursor_px() < 200);
+  CHECK(ticks().starts_with("0 s"));
+  browser.evaluate("document.getElementById('zoom-all').click()");
+  CHECK(ticks() == whole);
+
+  // ten times the deviation is said on the screen; the figures stay true
+  browser.evaluate("document.getElementById('worst').click()");
+  const double ahead_mm = desk.difference(1, 1);
+  CHECK(browser.evaluate("document.getElementById('exaggerated').hidden") == true);
+  browser.evaluate(
+      "document.getElementById('exaggerate').value = '10', document.getElementById('exaggerate').dispatchEvent(new "
+      "Event('input'))");
+  CHECK(browser.evaluate("document.getElementById('exaggerated').hidden") == false);
+  CHECK_THAT(text("exaggerated"), Catch::Contains("10 times as large"));
+  CHECK(desk.difference(1, 1) == ahead_mm);
+  // x of the nominal robot, 10 times as far from the recorded one
+  CHECK(
+      browser.evaluate(
+          "import('./playback_data.js').then(({exaggerated}) => { const at = (p, yaw, tip) => ({p, q: "
+          "[Math.cos(yaw / 2), 0, 0, Math.sin(yaw / 2)], flipper: [tip, 0, 0, 0]}); const far = exaggerated(at([1, 2, "
+          "0], 0.1, 0.2), at([1.02, 2, 0.01], 0.2, 0.1), 10); return [...far.p, 2 * Math.atan2(far.q[3], far.q[0]), "
+          "far.flipper[0]].map((v) => Number(v.toFixed(6))); })") == nlohmann::json{1.2, 2, 0.1, 1.1, -0.8});
+  browser.screenshot(desk.pictures / "playback-exaggerated.png");
+
+  // the picture has the 3D view above the words and the curves
+  browser.evaluate(
+      "window.saved = null, window.file = null, HTMLAnchorElement.prototype.click = function () { window.saved = "
+      "this.download; }, URL.createObjectURL = (file) => { window.file = file; return '#'; }, "
+      "document.getElementById('save').click()");
+  browser.wait_for("window.saved !== null");
+  CHECK_THAT(browser.evaluate("window.saved").get<std::string>(),
+             Catch::StartsWith("run-000-") && Catch::EndsWith("s.png"));
+  CHECK(browser.evaluate("window.file.type") == "image/png");
+  CHECK(browser.evaluate("window.file.size > 20000") == true);
   for (const std::string& complaint : browser.complaints()) UNSCOPED_INFO(complaint);
   CHECK(browser.complaints().empty());
 }
