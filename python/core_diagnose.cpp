@@ -78,7 +78,7 @@ py::tuple diagnose(const fs::path& folder, const py::dict& asked, const fs::path
         progress(words, done);
       });
   return py::make_tuple(gap::diagnose::diagnosis_json(*diagnosis), gap::diagnose::diagnosis_text(*diagnosis),
-                        gap::diagnose::diagnosis_html(*diagnosis), gap::diagnose::robot_file(*diagnosis).text);
+                        gap::diagnose::diagnosis_html(*diagnosis, out), gap::diagnose::robot_file(*diagnosis).text);
 }
 
 }  // namespace

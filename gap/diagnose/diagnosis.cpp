@@ -199,6 +199,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   d.options = options;
   d.options.progress = {};
   d.options.stop = nullptr;
+  d.folder = folder.string();
 
   // what is compared: runs, candidates, features, and which runs repeat each other
   d.observations = observe(folder, options.robot, options.world, options.most_runs, options.refused_runs);

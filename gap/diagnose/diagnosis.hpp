@@ -45,6 +45,7 @@ struct DiagnosisOptions {
 
 struct Diagnosis {
   DiagnosisOptions options;  // as used, without `progress` and `stop`
+  std::string folder;        // of the dataset, as given
   Observations observations;
   ComparedFeatures features;      // less the baseline's residual, if there is one
   std::size_t baseline_runs = 0;  // baseline runs that repeat these

@@ -18,8 +18,8 @@ namespace kenaf::gap::diagnose {
 std::string diagnosis_text(const Diagnosis& diagnosis);
 // In the format kenaf-gap-report/2.
 std::string diagnosis_json(const Diagnosis& diagnosis);
-// A self-contained page without scripts.
-std::string diagnosis_html(const Diagnosis& diagnosis);
+// A self-contained page. `folder`: where the reports are going to be, for the commands in it; empty: not known.
+std::string diagnosis_html(const Diagnosis& diagnosis, const std::filesystem::path& folder = {});
 
 // The runs that the page draws, one of each manoeuvre, whole and with all their columns. Simulates them.
 struct ShownRun {

@@ -65,11 +65,11 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   if (!d.interrupted.empty() && has_finished_report(folder)) {
-    runs::write_whole_file(folder / kPartialPage, diagnosis_html(d));
+    runs::write_whole_file(folder / kPartialPage, diagnosis_html(d, folder));
     runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));
     return folder / kPartialPage;
   }
-  runs::write_whole_file(folder / kPage, diagnosis_html(d));
+  runs::write_whole_file(folder / kPage, diagnosis_html(d, folder));
   const RobotFile robot = robot_file(d);
   if (!robot.name.empty()) runs::write_whole_file(folder / robot.name, robot.text);
   for (const char* other : kRobotFiles)  // of an earlier diagnosis, which would contradict this one

@@ -1,6 +1,8 @@
 // The page of a diagnosis: one self-contained file.
 #include <fmt/format.h>
 
+#include "gap/diagnose/page/moment_view.hpp"
+#include "gap/diagnose/page/scripts.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
 #include "gap/diagnose/report.hpp"
@@ -36,24 +38,56 @@ dl { display: grid; grid-template-columns: 10em 1fr; gap: 10px 14px; margin: 16p
 dd { margin: 0; } dd p, dd ul { margin: 0; } dd ul { padding-left: 18px; } dd li { margin: 0 0 3px; }
 details { margin: 16px 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 12px; margin: 8px 0; }
+.moment { width: 524px; max-width: 100%; margin: 0; scroll-margin-top: 12px; } .moment p { margin: 2px 0; font-size: 13px; }
+.moment:target figcaption, h3:target { outline: 2px solid var(--real); outline-offset: 3px; }
+.moment code { font-size: 12px; overflow-wrap: anywhere; }
+.scene { border: 1px solid var(--frame); margin: 4px 0; touch-action: pan-y; cursor: grab; overflow: hidden; }
+.scene svg, .scene canvas { display: block; width: 100%; height: auto; aspect-ratio: 524 / 300; }
+.still.replaced, .scene canvas[hidden] { display: none; }
+:root { --belt: #55595b; --arm: #d9a94a; --eye: #eef2ee; }
+.still path { fill: var(--m); stroke: none; } .still .floor { fill: none; stroke: var(--grid); }
+.still .solid { --m: var(--ground); stroke: var(--ground-edge); stroke-width: 0.4; }
+.still .real .hull { --m: var(--real); } .still .real .belt { --m: var(--belt); } .still .real .flipper { --m: var(--arm); }
+.still .real .eye { --m: var(--eye); } .still .nominal { --m: var(--sim); opacity: 0.5; } .still .corrected { --m: var(--third); opacity: 0.5; }
+.still .s0 { fill: color-mix(in srgb, var(--m) 55%, #000); } .still .s1 { fill: color-mix(in srgb, var(--m) 66%, #000); }
+.still .s2 { fill: color-mix(in srgb, var(--m) 78%, #000); } .still .s3 { fill: color-mix(in srgb, var(--m) 90%, #000); }
+.controls { display: flex; flex-wrap: wrap; gap: 4px 10px; align-items: center; font-size: 13px; min-height: 30px; }
+.controls button { font: inherit; min-width: 62px; min-height: 26px; } .controls input[type=range] { flex: 1; min-width: 90px; }
+.controls output { font-variant-numeric: tabular-nums; min-width: 4em; } .controls label { white-space: nowrap; }
+.angles caption { text-align: left; color: var(--soft); padding-bottom: 4px; } .angles > label, .angles .readout { font-size: 13px; }
+.angles .readout { min-height: 1.5em; } .angles table { margin-top: 4px; }
+.angles th, .angles td { border: 1px solid var(--grid); text-align: center; padding: 2px 3px; min-width: 27px; }
+.angles th[scope=row] { text-align: right; white-space: nowrap; padding-left: 0; position: sticky; left: 0; background: var(--paper); color: var(--ink); }
+.angles th[scope=col] { vertical-align: bottom; color: var(--ink); font-weight: 400; }
+.angles th span { writing-mode: vertical-rl; transform: rotate(180deg); white-space: nowrap; }
+.angles td[style] { background: color-mix(in srgb, var(--shade) calc(62% * var(--s)), var(--paper)); print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+.angles thead td { border: 0; } .angles .same { background: var(--grid); } .angles .at, .angles .at span { text-decoration: underline; font-weight: 600; }
+.angles td:focus-visible { outline: 3px solid var(--ink); outline-offset: -2px; }
+.angles > input:not(:checked) ~ * .rest, .angles.whole > input:not(:checked) ~ * { display: none; }
+.angles.whole > label { display: inline !important; }
 @media print { body { max-width: none; } nav { display: none; } svg.chart, tr, .verdict { break-inside: avoid; }
   h2, h3 { break-after: avoid; } .tables { overflow: visible; } .tables svg.chart { max-width: 100%; }
   table { font-size: 10px; } th, td, td.text { padding: 2px 4px; white-space: normal; max-width: none; overflow-wrap: break-word; }
-  .glance { font-size: 11px; } .share { width: 110px; } }
+  .glance { font-size: 11px; } .share { width: 110px; }
+  .moment { break-inside: avoid; width: 48%; } .still.replaced { display: block; } .scene canvas, .controls { display: none; }
+  .angles > input, .angles.whole > label, .angles > label, .angles .readout { display: none !important; }
+  .angles > input:not(:checked) ~ .tables .rest { display: table-row-group; } .angles > input:not(:checked) ~ ul .rest { display: list-item; }
+  .angles.whole > input:not(:checked) ~ :not(label, .readout) { display: block; }
+  .angles table { font-size: 8px; } .angles th, .angles td { padding: 1px; min-width: 0; } }
 )";
 
-std::string contents(const Diagnosis& d) {
+std::string contents(const Diagnosis& d, bool has_moments) {
   std::string html = "<nav>";
   for (const StageDiagnosis& stage : d.stages)
     html += fmt::format("<a href=\"#{}\">{}</a>", stage_id(stage.passage), with_capital(from_to(stage.passage)));
-  return html +
-         "<a href=\"#where\">Where</a><a href=\"#overlay\">Runs</a><a href=\"#next\">Next</a>"
+  return html + "<a href=\"#where\">Where</a>" + (has_moments ? "<a href=\"#moments\">Moments</a>" : "") +
+         "<a href=\"#overlay\">Runs</a><a href=\"#next\">Next</a>"
          "<a href=\"#used\">Used</a><a href=\"#method\">Method</a></nav>\n";
 }
 
 }  // namespace
 
-std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays) {
+std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays, std::string_view report_folder) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Gap diagnosis: {}</title>\n"
@@ -61,14 +95,20 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
       "simulation. {}</p>\n",
       d.interrupted.empty() ? verdict_name(d.verdict) : "unfinished", plot::style_sheet(), kPageStyle,
       plot::escaped(d.observations.dataset.description));
-  html += answer_section(d) + contents(d);
+  const std::vector<Moment> moments = moments_of(d, overlays);
+  const std::string worst = moments_section(d, overlays, moments, report_folder);
+  html += answer_section(d) + contents(d, !worst.empty());
   for (std::size_t s = 0; s < d.stages.size(); ++s) html += stage_section(d, s);
-  html += where_section(d, overlays) + overlay_section(d, overlays) + next_section(d);
-  return html + used_section(d, overlays) + method_section(d) + "</body>\n</html>\n";
+  html += where_section(d, overlays, moments) + worst + overlay_section(d, overlays) + next_section(d);
+  html += used_section(d, overlays) + method_section(d);
+  // scripts last: the page is whole without them
+  for (const std::string_view script : {moment_player_script(), confusability_script()})
+    html += fmt::format("<script>//<![CDATA[\n{}//]]></script>\n", script);
+  return html + "</body>\n</html>\n";
 }
 
-std::string diagnosis_html(const Diagnosis& d) {
-  return diagnosis_page(d, simulate_overlays(d));
+std::string diagnosis_html(const Diagnosis& d, const std::filesystem::path& folder) {
+  return diagnosis_page(d, simulate_overlays(d), folder.string());
 }
 
 }  // namespace kenaf::gap::diagnose

@@ -12,6 +12,7 @@ struct StripSpan {
   double from, to;
   double strength;         // of the shade, 0 to 1
   std::string name, note;  // in the span, one below the other, if they have room
+  std::string link = {};   // where a click on it leads, "#anchor"; empty: nowhere
 };
 
 struct Strip {

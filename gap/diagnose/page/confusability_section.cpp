@@ -6,7 +6,7 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
-#include "gap/plot/heat_map.hpp"
+#include "gap/plot/chart.hpp"
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -38,42 +38,36 @@ std::vector<std::size_t> joined(const MatrixXd& angle_deg, std::vector<std::size
   return a;
 }
 
-// Rows of the isolability: effects of the best model, their rivals, then those that explain most alone.
-std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
-  std::vector<std::size_t> wanted, rows;
-  for (const ModelEffect& effect : stage.decision.effects) {
-    wanted.push_back(effect.candidate);
-    wanted.insert(wanted.end(), effect.rivals.begin(), effect.rivals.end());
-  }
-  for (const SingleEvidence& single : stage.ranking) wanted.push_back(single.candidate);
-  wanted.insert(wanted.end(), stage.isolability.candidates.begin(), stage.isolability.candidates.end());
-  for (const std::size_t candidate : wanted) {
-    const auto found = std::ranges::find(stage.isolability.candidates, candidate);
-    const auto row = static_cast<std::size_t>(found - stage.isolability.candidates.begin());
-    if (found != stage.isolability.candidates.end() && rows.size() < kMostShown && std::ranges::count(rows, row) == 0)
-      rows.push_back(row);
-  }
+// Rows of the isolability that a page shows, in the order in which they matter.
+struct ShownRows {
+  std::vector<std::size_t> first;  // the effects of the best model with their rivals: what the verdict is about
+  std::vector<std::size_t> rest;   // those that explain most alone, then others
+};
+ShownRows shown_rows(const StageDiagnosis& stage) {
+  ShownRows rows;
+  const std::vector<std::size_t>& candidates = stage.isolability.candidates;
+  const auto add = [&](std::vector<std::size_t>& to, std::size_t candidate) {
+    const auto found = std::ranges::find(candidates, candidate);
+    const auto row = static_cast<std::size_t>(found - candidates.begin());
+    if (found != candidates.end() && rows.first.size() + rows.rest.size() < kMostShown &&
+        std::ranges::count(rows.first, row) + std::ranges::count(rows.rest, row) == 0)
+      to.push_back(row);
+  };
+  for (const ModelEffect& effect : stage.decision.effects) add(rows.first, effect.candidate);
+  for (const ModelEffect& effect : stage.decision.effects)
+    for (const std::size_t rival : effect.rivals) add(rows.first, rival);
+  for (const SingleEvidence& single : stage.ranking) add(rows.rest, single.candidate);
+  for (const std::size_t candidate : candidates) add(rows.rest, candidate);
   return rows;
 }
 
-std::string matrix(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
-  plot::HeatMap map;
-  map.title = "Similarity of the effects in these runs: angle between their shifts, in degrees";
-  map.legend = fmt::format("0: identical (dark); 90: orthogonal; below {:.0f}: alike", kDistinguishable_deg);
-  map.width_px = kWide_px;
-  map.rows = map.columns = names;
-  for (std::size_t r = 0; r < names.size(); ++r) {
-    map.cells.emplace_back();
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      const double angle = angle_deg(static_cast<Index>(r), static_cast<Index>(c));
-      if (r == c)
-        map.cells.back().push_back({});
-      else
-        map.cells.back().push_back({fmt::format("{:.0f}", angle), 1 - angle / kUnlike_deg,
-                                    fmt::format("{} and {}: {:.1f} degrees", names[r], names[c], angle)});
-    }
-  }
-  return "<div class=\"tables\">" + to_svg(map) + "</div>\n";
+MatrixXd angles_between(const MatrixXd& from, const std::vector<std::size_t>& rows) {
+  MatrixXd chosen(std::ssize(rows), std::ssize(rows));
+  for (Index i = 0; i < chosen.rows(); ++i)
+    for (Index j = 0; j < chosen.cols(); ++j)
+      chosen(i, j) = from(static_cast<Index>(rows[static_cast<std::size_t>(i)]),
+                          static_cast<Index>(rows[static_cast<std::size_t>(j)]));
+  return chosen;
 }
 
 // Whether the decision tells two candidates apart although they shift the runs alike: one is named, and the other is no
@@ -86,19 +80,41 @@ bool told_apart(const StageDiagnosis& stage, std::size_t a, std::size_t b) {
   });
 }
 
-// `candidates`: of Diagnosis::candidates, in the order of the matrix.
-std::string pairs_in_words(const Diagnosis& d, const StageDiagnosis& stage, const std::vector<std::size_t>& candidates,
-                           const MatrixXd& angle_deg) {
+// A matrix of candidates, the first ones on top; `candidates`: of Diagnosis::candidates.
+struct Angles {
+  std::vector<std::size_t> candidates;
+  std::size_t first;  // so many of them matter most, and are not folded
+  MatrixXd deg;
+  std::vector<std::string> names;
+};
+
+std::string angle_row(const StageDiagnosis& stage, const Angles& angles, std::size_t row) {
+  std::string html = fmt::format("<tr><th scope=\"row\">{}</th>", plot::escaped(angles.names[row]));
+  for (std::size_t c = 0; c < angles.names.size(); ++c) {
+    if (c == row) {
+      html += "<td class=\"same\"></td>";
+      continue;
+    }
+    const double deg = angles.deg(static_cast<Index>(row), static_cast<Index>(c));
+    const bool apart = deg < kDistinguishable_deg && told_apart(stage, angles.candidates[row], angles.candidates[c]);
+    html += fmt::format("<td style=\"--s:{:.2f}\" data-deg=\"{:.1f}\"{}>{:.0f}</td>",
+                        std::clamp(1 - deg / kUnlike_deg, 0.0, 1.0), deg, apart ? " data-apart=\"\"" : "", deg);
+  }
+  return html + "</tr>\n";
+}
+
+// Pairs that are alike, those with an effect of the verdict first; the others are folded like the table's rows.
+std::string pairs_in_words(const StageDiagnosis& stage, const Angles& angles) {
   std::vector<std::string> pairs;
   bool some_told_apart = false;
-  for (std::size_t a = 0; a < candidates.size(); ++a)
-    for (std::size_t b = a + 1; b < candidates.size(); ++b)
-      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kDistinguishable_deg) {
-        const bool apart = told_apart(stage, candidates[a], candidates[b]);
+  for (std::size_t a = 0; a < angles.names.size(); ++a)
+    for (std::size_t b = a + 1; b < angles.names.size(); ++b)
+      if (const double deg = angles.deg(static_cast<Index>(a), static_cast<Index>(b)); deg < kDistinguishable_deg) {
+        const bool apart = told_apart(stage, angles.candidates[a], angles.candidates[b]);
         some_told_apart |= apart;
-        pairs.push_back(
-            fmt::format("<li>{} and {} ({:.1f} degrees{})</li>\n", plot::escaped(d.candidates[candidates[a]].name),
-                        plot::escaped(d.candidates[candidates[b]].name), angle, apart ? "; told apart here" : ""));
+        pairs.push_back(fmt::format("<li{}>{} and {} ({:.1f} degrees{})</li>\n",
+                                    a < angles.first ? "" : " class=\"rest\"", plot::escaped(angles.names[a]),
+                                    plot::escaped(angles.names[b]), deg, apart ? "; told apart here" : ""));
       }
   if (pairs.empty()) return paragraph(fmt::format("No two of these are within {:.0f} degrees.", kDistinguishable_deg));
   std::string html = paragraph(fmt::format("Within {:.0f} degrees, so that a small one may be taken for the other:{}",
@@ -108,8 +124,41 @@ std::string pairs_in_words(const Diagnosis& d, const StageDiagnosis& stage, cons
                                                            : "")) +
                      "<ul>\n";
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) html += pairs[i];
-  if (pairs.size() > kMostPairs) html += fmt::format("<li>and {} more pairs</li>\n", pairs.size() - kMostPairs);
+  if (pairs.size() > kMostPairs)
+    html += fmt::format("<li class=\"rest\">and {} more pairs</li>\n", pairs.size() - kMostPairs);
   return html + "</ul>\n";
+}
+
+// The table and the pairs: folded rows are shown by the check box before them, and always on paper.
+std::string matrix(const StageDiagnosis& stage, const Angles& angles) {
+  const std::string id = "all-of-" + stage_id(stage.passage);
+  const std::size_t rest = angles.names.size() - angles.first;
+  std::string html = fmt::format("<div class=\"angles{}\" data-alike=\"{:.0f}\">\n", angles.first > 0 ? "" : " whole",
+                                 kDistinguishable_deg);
+  if (rest > 0)
+    html += fmt::format("<input type=\"checkbox\" id=\"{0}\"/> <label for=\"{0}\">{1}</label>\n", id,
+                        angles.first > 0 ? fmt::format("show the other {} rows", rest)
+                                         : fmt::format("show the table of {} candidates", rest));
+  html += fmt::format("<p class=\"readout\" role=\"status\" hidden=\"hidden\" data-usual=\"{}\"></p>\n",
+                      "Point at a cell, or reach the table by Tab and go on by the arrow keys.");
+  html += fmt::format(
+      "<div class=\"tables\"><table>\n<caption>Angle between the shifts of two effects, in degrees. 0: "
+      "identical (dark); 90: nothing in common; below {:.0f}: alike</caption>\n<thead><tr><td></td>",
+      kDistinguishable_deg);
+  for (const std::string& name : angles.names)
+    html += fmt::format("<th scope=\"col\"><span>{}</span></th>", plot::escaped(name));
+  html += "</tr></thead>\n";
+  if (angles.first > 0) {
+    html += "<tbody>\n";
+    for (std::size_t r = 0; r < angles.first; ++r) html += angle_row(stage, angles, r);
+    html += "</tbody>\n";
+  }
+  if (rest > 0) {
+    html += "<tbody class=\"rest\">\n";
+    for (std::size_t r = angles.first; r < angles.names.size(); ++r) html += angle_row(stage, angles, r);
+    html += "</tbody>\n";
+  }
+  return html + "</table></div>\n" + pairs_in_words(stage, angles) + "</div>\n";
 }
 
 }  // namespace
@@ -137,35 +186,32 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
     return "<h3>Which effects these runs can distinguish</h3>\n" +
            paragraph("No effect in this stage shows in these runs, whatever its size.");
 
-  // the angles of the shown candidates, sorted so that look-alikes are neighbours
-  const std::vector<std::size_t> rows = shown_rows(stage);
-  const auto select = [&](const std::vector<std::size_t>& chosen, const MatrixXd& from) {
-    MatrixXd selected(std::ssize(chosen), std::ssize(chosen));
-    for (Index i = 0; i < selected.rows(); ++i)
-      for (Index j = 0; j < selected.cols(); ++j)
-        selected(i, j) = from(static_cast<Index>(chosen[static_cast<std::size_t>(i)]),
-                              static_cast<Index>(chosen[static_cast<std::size_t>(j)]));
-    return selected;
-  };
-  MatrixXd angle_deg = select(rows, isolability.angle_deg);
-  const std::vector<std::size_t> order = look_alikes_together(angle_deg);
-  angle_deg = select(order, angle_deg);
-  std::vector<std::size_t> candidates;
-  for (const std::size_t i : order) candidates.push_back(isolability.candidates[rows[i]]);
-  const std::vector<std::string> names = candidate_names(d, candidates);
+  // what the verdict is about on top, in each part look-alikes as neighbours
+  const ShownRows shown = shown_rows(stage);
+  Angles angles{{}, shown.first.size(), {}, {}};
+  std::vector<std::size_t> rows;
+  for (const std::vector<std::size_t>& part : {shown.first, shown.rest})
+    for (const std::size_t i : look_alikes_together(angles_between(isolability.angle_deg, part)))
+      rows.push_back(part[i]);
+  for (const std::size_t row : rows) angles.candidates.push_back(isolability.candidates[row]);
+  angles.deg = angles_between(isolability.angle_deg, rows);
+  angles.names = candidate_names(d, angles.candidates);
 
   // how to read it, what is not shown, then matrix and pairs
-  std::string html = "<details><summary>Which effects these runs can distinguish</summary>\n";
+  std::string html = "<h3>Which effects these runs can distinguish</h3>\n";
   html += paragraph(
       "A small change of an effect shifts all channels of all runs in some direction. The angle between the directions "
       "of two effects depends on the manoeuvres and the sensors alone, not on the gap.",
       "soft");
+  if (angles.first > 0)
+    html += paragraph(
+        "On top: the effects of the best model, and the rivals that would explain as much in their place.", "soft");
   if (rows.size() < isolability.candidates.size())
     html += paragraph(fmt::format("{} of {} candidates that show in these runs: those of the best model, and those "
                                   "that explain most alone. report.json lists all.",
                                   rows.size(), isolability.candidates.size()),
                       "soft");
-  return html + matrix(names, angle_deg) + pairs_in_words(d, stage, candidates, angle_deg) + "</details>\n";
+  return html + matrix(stage, angles);
 }
 
 }  // namespace kenaf::gap::diagnose

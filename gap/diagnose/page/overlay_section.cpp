@@ -30,8 +30,8 @@ std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlay
 
   // per manoeuvre the path and the total residual, then each channel with its residual
   for (const Overlay& overlay : overlays) {
-    html += fmt::format("<h3>{} <span class=\"soft\">{}, one of {}</span></h3>\n<div class=\"figures\">\n",
-                        plot::escaped(group_title(d, overlay.group)),
+    html += fmt::format("<h3 id=\"{}\">{} <span class=\"soft\">{}, one of {}</span></h3>\n<div class=\"figures\">\n",
+                        run_id(overlay.group), plot::escaped(group_title(d, overlay.group)),
                         plot::escaped(d.observations.runs[overlay.run].file), d.repeats[overlay.group].size());
     html += to_svg(path_figure(d, overlay)) + to_svg(residual_figure(d, overlay));
     for (std::size_t i = 0; i < overlay.channels.size(); ++i)

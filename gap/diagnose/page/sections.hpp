@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "gap/diagnose/page/moments.hpp"
 #include "gap/diagnose/page/overlays.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -19,7 +20,8 @@ std::string residual_part(const Diagnosis& d, const StageDiagnosis& stage);
 std::string ranking_part(const Diagnosis& d, const StageDiagnosis& stage);
 std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage);
 
-std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays);
+// `moments`: where its phases link to.
+std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays, std::span<const Moment> moments);
 std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays);
 std::string next_section(const Diagnosis& d);
 std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays);
@@ -32,7 +34,7 @@ std::string stage_id(Passage passage);
 // with their most similar ends adjacent.
 std::vector<std::size_t> look_alikes_together(const Eigen::MatrixXd& angle_deg);
 
-// The whole page.
-std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays);
+// The whole page. `report_folder`: where it is going to be, for the commands in it; empty: not known.
+std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays, std::string_view report_folder = {});
 
 }  // namespace kenaf::gap::diagnose

@@ -23,8 +23,9 @@ bool shows_after(const StageDiagnosis& stage) {
 }
 
 // `scale`: from shares to shares of the gap before.
-std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, const StageDiagnosis& stage,
-                     const GapPlaces& where, double scale, std::string_view title) {
+std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, std::span<const Moment> moments,
+                     std::size_t s, const GapPlaces& where, double scale, std::string_view title) {
+  const StageDiagnosis& stage = d.stages[s];
   double most = 0;
   for (const PhaseGap& phase : stage.where.phases) most = std::max(most, phase.share);
   plot::StripChart chart;
@@ -39,8 +40,14 @@ std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, cons
     for (const PhaseGap& phase : where.phases) {
       if (phase.group != overlay.group) continue;
       const double share = phase.share * scale;
-      strip.spans.push_back(
-          {phase.from_s, phase.to_s, most > 0 ? share / most : 0, std::string(phase.phase), percent(share)});
+      const auto before = std::ranges::find_if(stage.where.phases, [&](const PhaseGap& other) {
+        return other.group == phase.group && other.from_s == phase.from_s;
+      });
+      std::string link;
+      if (before != stage.where.phases.end())
+        link = link_to_phase(d, moments, s, static_cast<std::size_t>(before - stage.where.phases.begin()));
+      strip.spans.push_back({phase.from_s, phase.to_s, most > 0 ? share / most : 0, std::string(phase.phase),
+                             percent(share), std::move(link)});
     }
     std::ranges::sort(strip.spans, {}, &plot::StripSpan::from);
     chart.strips.push_back(std::move(strip));
@@ -48,11 +55,14 @@ std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, cons
   return to_svg(chart);
 }
 
-std::string phase_table(const Diagnosis& d, const StageDiagnosis& stage) {
+std::string phase_table(const Diagnosis& d, std::size_t s, std::span<const Moment> moments) {
   Table table{
       {"manoeuvre", "phase", "from (s)", "to (s)", "x (m)", "y (m)", "share of the gap", "left after"}, {}, {0, 1}};
-  for (const PhaseGap& phase : stage.where.phases) {
+  const StageDiagnosis& stage = d.stages[s];
+  for (std::size_t p = 0; p < stage.where.phases.size(); ++p) {
+    const PhaseGap& phase = stage.where.phases[p];
     if (table.rows.size() == kMostPhases || phase.share < 0.005) break;
+    table.row_links.push_back(link_to_phase(d, moments, s, p));
     const auto left = std::ranges::find_if(stage.where_left.phases, [&](const PhaseGap& other) {
       return other.group == phase.group && other.from_s == phase.from_s;
     });
@@ -97,7 +107,7 @@ std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, const St
 
 }  // namespace
 
-std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays) {
+std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays, std::span<const Moment> moments) {
   // nothing was located, or there is nothing to locate
   std::string html = section_head("where", "Where the gap is, in time and place");
   const std::optional<std::size_t> main = main_stage(d);
@@ -108,7 +118,7 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
   // phases and how the gap is counted in them
   html += paragraph(fmt::format("Phases are detected in the data. The gap is measured in intervals of {} s of each "
                                 "channel; an interval across several phases is divided between them by the residuals "
-                                "in its spans of {} s.",
+                                "in its spans of {} s. A phase links to its worst moment, or else to its run.",
                                 d.options.stretch_s, d.options.span_s),
                     "soft");
 
@@ -120,12 +130,12 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
       html += paragraph("No interval of any channel is beyond chance by itself.");
       continue;
     }
-    html +=
-        time_map(d, overlays, stage, stage.where, 1, "Before: the phases of each manoeuvre by their share of the gap");
+    html += time_map(d, overlays, moments, s, stage.where, 1,
+                     "Before: the phases of each manoeuvre by their share of the gap");
     if (shows_after(stage))
-      html += time_map(d, overlays, stage, stage.where_left, share_left(stage),
+      html += time_map(d, overlays, moments, s, stage.where_left, share_left(stage),
                        fmt::format("After: what is left, {} of the squared gap before", percent(share_left(stage))));
-    html += phase_table(d, stage);
+    html += phase_table(d, s, moments);
     if (s == *main) html += maps(d, overlays, stage);
   }
   return html;

@@ -30,15 +30,19 @@ std::string with_capital(std::string text) {
 }
 
 std::string to_html(const Table& table) {
-  const auto cells = [&](const std::vector<std::string>& row, std::string_view tag) {
+  const auto cells = [&](const std::vector<std::string>& row, std::string_view tag, std::string_view link = {}) {
     std::string html = "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c)
-      html += fmt::format("<{0}{1}>{2}</{0}>", tag,
-                          std::ranges::count(table.text_columns, c) > 0 ? " class=\"text\"" : "", escaped(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const bool is_linked = c < 2 && !link.empty();
+      html += fmt::format(
+          "<{0}{1}>{2}{3}{4}</{0}>", tag, std::ranges::count(table.text_columns, c) > 0 ? " class=\"text\"" : "",
+          is_linked ? fmt::format("<a href=\"{}\">", escaped(link)) : "", escaped(row[c]), is_linked ? "</a>" : "");
+    }
     return html + "</tr>\n";
   };
   std::string html = "<div class=\"tables\"><table>\n" + cells(table.head, "th");
-  for (const std::vector<std::string>& row : table.rows) html += cells(row, "td");
+  for (std::size_t r = 0; r < table.rows.size(); ++r)
+    html += cells(table.rows[r], "td", r < table.row_links.size() ? std::string_view(table.row_links[r]) : "");
   return html + "</table></div>\n";
 }
 

@@ -24,6 +24,7 @@ struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> text_columns{0};  // aligned left
+  std::vector<std::string> row_links{};      // of each row's first two cells; empty: none
 };
 std::string to_html(const Table& table);
 

@@ -102,10 +102,36 @@ TEST_CASE("A named effect is told from what looks like it, unless that is a riva
   CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees)") && !Contains("told apart here"));
 }
 
+TEST_CASE("The table of look-alikes has the effects of the verdict and their rivals on top, the others folded") {
+  const auto table_of = [](const Diagnosis& d) {
+    const std::string page = page_of(d), begin = "<div class=\"angles";
+    return page.substr(page.find(begin), page.find("</table>", page.find(begin)) - page.find(begin));
+  };
+  const auto row = [](const std::string& name) { return Contains("<tr><th scope=\"row\">" + name + "</th>"); };
+  const auto parts = [&](const std::string& table) {
+    const std::size_t rest = table.find("<tbody class=\"rest\">");
+    return std::pair{table.substr(0, rest), table.substr(rest)};
+  };
+  const auto [named, folded] = parts(table_of(made_diagnosis()));
+  CHECK_THAT(named, row("drive_lag") && !row("com_forward") && !row("ground_slope"));
+  CHECK_THAT(named, Contains("show the other 2 rows"));
+  CHECK_THAT(folded, row("com_forward") && row("ground_slope"));
+  CHECK_THAT(folded, Contains("data-deg=\"4.2\">4</td>"));
+
+  const auto [ambiguous, others] = parts(table_of(made_ambiguous()));
+  CHECK_THAT(ambiguous, row("com_forward") && row("ground_slope") && !row("drive_lag"));
+  CHECK_THAT(others, row("drive_lag"));
+
+  // without a model nothing is on top, and the whole table is folded
+  Diagnosis d = made_diagnosis();
+  d.stages[0].decision.effects.clear();
+  CHECK_THAT(table_of(d), Contains("class=\"angles whole\"") && Contains("show the table of 3 candidates"));
+}
+
 TEST_CASE("A page needs nothing but itself, and its colours follow light, dark and paper") {
   const std::string page = page_of(made_diagnosis());
-  CHECK_THAT(page, !Contains("<script") && !Contains("<link") && !Contains("href=\"http") && !Contains("src=") &&
-                       !Contains("@import") && !Contains("url("));
+  CHECK_THAT(page, !Contains("<script ") && !Contains("import ") && !Contains("fetch(") && !Contains("<link") &&
+                       !Contains("href=\"http") && !Contains("src=") && !Contains("@import") && !Contains("url("));
   CHECK_THAT(page, Contains("prefers-color-scheme: dark") && Contains("@media print"));
 }
 

@@ -1,10 +1,9 @@
-// Rows with intervals, heat maps, strips of time, discs, and dense lines: what is drawn where.
+// Rows with intervals, strips of time, discs, and dense lines: what is drawn where.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "gap/plot/chart.hpp"
-#include "gap/plot/heat_map.hpp"
 #include "gap/plot/row_chart.hpp"
 #include "gap/plot/simplify.hpp"
 #include "gap/plot/strip_chart.hpp"
@@ -89,20 +88,6 @@ TEST_CASE("Rows without a number, and no rows at all") {
   CHECK_THAT(svg, !Catch::Contains("nan") && !Catch::Contains("inf"));
 }
 
-TEST_CASE("A heat map has a number in each cell and shades it by strength") {
-  HeatMap map;
-  map.rows = map.columns = {"one", "two"};
-  map.cells = {{{}, {"7", 1, "one and two"}}, {{"7", 0.5, ""}, {}}};
-  const std::string svg = to_svg(map);
-  CHECK(fault_of_xml(svg).empty());
-  const std::vector<double> shades = numbers(svg, "fill-opacity");
-  REQUIRE(shades.size() == 2);
-  CHECK(shades[0] == Approx(2 * shades[1]));
-  CHECK(shades[0] < 0.7);  // text on it stays readable
-  CHECK_THAT(svg, Catch::Contains(">7</text>") && Catch::Contains("<title>one and two</title>"));
-  CHECK_THAT(to_svg(HeatMap{}), Catch::Contains("nothing to show"));
-}
-
 TEST_CASE("Strips share their axis, a name without room is still found under the pointer") {
   StripChart chart;
   chart.label_px = 86;
@@ -116,6 +101,12 @@ TEST_CASE("Strips share their axis, a name without room is still found under the
   CHECK_THAT(svg, Catch::Contains(">cruise</text>") && !Catch::Contains(">contact</text>") &&
                       Catch::Contains("<title>contact 10 %, 5.0 to 5.1</title>"));
   CHECK_THAT(to_svg(StripChart{}), Catch::Contains("nothing to show"));
+
+  // a span may lead somewhere
+  chart.strips[0].spans[0].link = "#a&b";
+  const std::string linked = to_svg(chart);
+  CHECK(fault_of_xml(linked).empty());
+  CHECK_THAT(linked, Catch::Contains("<a href=\"#a&amp;b\"><rect"));
 }
 
 TEST_CASE("Names of strips get the room that they need, up to half of the chart, then their ends are shown") {

@@ -151,6 +151,10 @@ void Browser::set_dark(bool dark) {
   call("Emulation.setEmulatedMedia", {{"features", json::array({feature})}});
 }
 
+void Browser::set_print(bool print) {
+  call("Emulation.setEmulatedMedia", {{"media", print ? "print" : "screen"}});
+}
+
 void Browser::key(std::string_view code, bool down, std::string_view key) {
   json event{{"type", down ? "rawKeyDown" : "keyUp"}, {"code", code}, {"key", key.empty() ? code : key}};
   if (code == "Enter" || code == "Space") {

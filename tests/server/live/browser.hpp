@@ -34,6 +34,7 @@ class Browser {
   void download_to(const std::filesystem::path& folder);
   void resize(int width, int height, bool phone = false);
   void set_dark(bool dark);
+  void set_print(bool print);  // as on paper, or on a screen
   // `code`: a KeyboardEvent.code, "KeyW"; `key`: what it types, if that matters. Enter and Space do what they do.
   void key(std::string_view code, bool down, std::string_view key = {});
   // "mousePressed", "mouseMoved" or "mouseReleased" of the left button, which is down meanwhile.
