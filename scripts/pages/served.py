@@ -1,0 +1,43 @@
+"""Kenaf's programs that serve pages, on free ports of loopback, from a build."""
+import contextlib, os, pathlib, re, subprocess, tempfile, time
+
+from browser import PATIENCE_S
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def environment(build):
+    """That of this process, with the build's programs and this tree's descriptions."""
+    return {**os.environ, 'KENAF_DATA_DIR': str(ROOT / 'share'), 'PATH': f"{build / 'bin'}:{os.environ['PATH']}",
+            'LD_LIBRARY_PATH': str(build / 'lib')}
+
+
+@contextlib.contextmanager
+def served(build, pattern, *command):
+    """Runs a server; gives what the pattern's group matches in its output, once it does."""
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment(build))
+        try:
+            end = time.monotonic() + PATIENCE_S
+            while True:
+                said = os.pread(log.fileno(), 1 << 20, 0).decode(errors='replace')
+                if match := re.search(pattern, said):
+                    break
+                if process.poll() is not None or time.monotonic() > end:
+                    raise RuntimeError(f"'{' '.join(map(str, command))}' did not say '{pattern}' but:\n{said}")
+                time.sleep(0.05)
+            yield match[1]
+        finally:
+            process.terminate()
+            process.wait()
+
+
+def live_view(build, world):
+    """The address of a live view with the world and no robot."""
+    return served(build, r'live view: (http\S+)', 'kenaf-world', '--world', world, '--port', '0', '--camera-port', '0', '--view', '127.0.0.1:0')
+
+
+def playback(build, runs, report, run=None):
+    """The address of a page that plays the runs beside their simulations."""
+    first = ['--run', run] if run else []
+    return served(build, r'(http\S+)', 'kenaf-gap', 'play', str(runs), '--report', str(report), '--view', '127.0.0.1:0', *first)
