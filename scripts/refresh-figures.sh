@@ -7,6 +7,9 @@
 #     obstacle-drive   a drive over a step, drawn                   README.md
 #     compare          the comparison: its table and its page       docs/compare.md
 #     gap-report       the tutorial's diagnosis, its first screen   docs/gap-report.md
+#     live-view        a robot that is driven by hand               docs/live-view.md
+#     playback         a climb beside its simulations               docs/compare.md
+#     operator-console the operator's screen on a step              docs/operator.md
 #     marmotte-report  a real robot's; needs LOGS, its folder of    docs/gap-marmotte.md
 #                      runs (docs/gap-marmotte.md), and ten minutes
 #
@@ -17,11 +20,11 @@ build=$(cd "${BUILD:-$root/build/release}" && pwd)
 pictures=$root/docs/pictures
 export KENAF_DATA_DIR=$root/share PATH="$build/bin:$PATH" LD_LIBRARY_PATH="$build/lib"
 scratch=$(mktemp -d)
-relay=
-trap '[ -z "$relay" ] || kill "$relay" 2>/dev/null || true; rm -rf "$scratch"' EXIT
+servers=()
+trap 'stop; rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-usage() { sed -n '2,13s/^# \{0,1\}//p' "$root/scripts/refresh-figures.sh"; }
+usage() { sed -n '2,16s/^# \{0,1\}//p' "$root/scripts/refresh-figures.sh"; }
 fail() { printf 'refresh-figures: %s\n' "$1" >&2; exit 1; }
 
 # The commands of the first fenced block of PAGE that contains WORDS, run here.
@@ -58,13 +61,23 @@ refresh_birds_eye() {
   camera_picture --world step-field --camera BirdsEye --flippers 0.5 --out "$pictures/birds-eye.png"
 }
 
+# Starts a program that writes its port into NAME.port; it ends with this script.
+start() {  # NAME COMMAND...
+  local name=$1; shift
+  "$@" --listen 127.0.0.1:0 --port-file "$name.port" >"$name.log" 2>&1 & servers+=($!)
+  for _ in $(seq 600); do [ ! -s "$name.port" ] || return 0; sleep 0.1; done
+  fail "$1 did not start: $(tail -n 3 "$name.log")"
+}
+stop() {
+  [ ${#servers[@]} -eq 0 ] || kill "${servers[@]}" 2>/dev/null || true
+  [ ${#servers[@]} -eq 0 ] || wait "${servers[@]}" || true
+  servers=()
+}
+
 refresh_obstacle_drive() {
-  kenaf-relayd --embedded --world step-150 --listen 127.0.0.1:0 --port-file relay.port --view off --cameras off \
-      >relay.log 2>&1 & relay=$!
-  for _ in $(seq 600); do [ ! -s relay.port ] || break; sleep 0.1; done
-  [ -s relay.port ] || fail "the relay did not start: $(tail -n 3 relay.log)"
+  start relay kenaf-relayd --embedded --world step-150 --view off --cameras off
   KENAF_RELAY=127.0.0.1:$(cat relay.port) KENAF_RECORD=climb.csv obstacle_drive_sim
-  kill "$relay" && wait "$relay" || true
+  stop
   kenaf-draw climb.csv --world step-150 --view side --title "Onto a step of 150 mm" --size 1500x640 \
       --out "$pictures/obstacle-drive.png"
 }
@@ -80,6 +93,20 @@ refresh_gap_report() {
   screenshot "$PWD/diagnosis/report.html" "$pictures/gap-report.png" 1100 1330
 }
 
+refresh_live_view() { "$root/scripts/pages/picture.py" live-view "$build" "$pictures/live-view.png"; }
+
+refresh_playback() {
+  run_block docs/gap-tutorial.md "diagnose real --out diagnosis"
+  "$root/scripts/pages/picture.py" playback "$build" "$pictures/playback.png" real diagnosis
+}
+
+refresh_operator_console() {
+  start relay kenaf-relayd --embedded --world step-200 --view off
+  KENAF_RELAY=127.0.0.1:$(cat relay.port) start control operator_control_sim
+  "$root/scripts/pages/picture.py" console "$build" "$pictures/operator-console.png" "$(cat control.port)"
+  stop
+}
+
 refresh_marmotte_report() {
   [ -n "${LOGS:-}" ] || fail "marmotte-report needs LOGS=FOLDER, the runs of docs/gap-marmotte.md"
   kenaf-gap diagnose "$LOGS" --out marmotte
@@ -88,7 +115,7 @@ refresh_marmotte_report() {
 
 [ "${1:-}" != --help ] || { usage; exit 0; }
 names=("$@")
-[ ${#names[@]} -gt 0 ] || names=(birds-eye obstacle-drive compare gap-report)
+[ ${#names[@]} -gt 0 ] || names=(birds-eye obstacle-drive compare gap-report live-view playback operator-console)
 for name in "${names[@]}"; do
   declare -F "refresh_${name//-/_}" >/dev/null || { usage >&2; printf "refresh-figures: no figure '%s'\n" "$name" >&2; exit 2; }
 done
