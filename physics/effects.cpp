@@ -7,6 +7,8 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "formats/settings/nearest_word.hpp"
+
 namespace kenaf::physics {
 namespace {
 
@@ -144,11 +146,12 @@ constexpr EffectInfo kCatalogue[] = {
      kClockOffset},
 };
 
+// "lag_s, scale; did you mean scale?"
 template <typename Range>
-std::string names_of(const Range& range) {
-  std::vector<std::string_view> names;
-  for (const auto& item : range) names.push_back(item.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+std::string alternatives(const Range& range, std::string_view to) {
+  std::vector<std::string> names;
+  for (const auto& item : range) names.emplace_back(item.name);
+  return fmt::format("{}{}", fmt::join(names, ", "), settings::did_you_mean(to, names));
 }
 
 }  // namespace
@@ -185,11 +188,12 @@ void set_effect(Effects& effects, std::string_view assignment) {
   // Both names must be in the catalogue; errors list what is.
   const EffectInfo* effect = find_effect(name);
   if (!effect)
-    throw std::invalid_argument(fmt::format("effect \"{}\": there are {}", name, names_of(effect_catalogue())));
+    throw std::invalid_argument(
+        fmt::format("effect \"{}\": there are {}", name, alternatives(effect_catalogue(), name)));
   const EffectParameter* parameter = find_parameter(*effect, parameter_name);
   if (!parameter)
-    throw std::invalid_argument(
-        fmt::format("effect {}: has no parameter \"{}\", but {}", name, parameter_name, names_of(effect->parameters)));
+    throw std::invalid_argument(fmt::format("effect {}: has no parameter \"{}\", but {}", name, parameter_name,
+                                            alternatives(effect->parameters, parameter_name)));
 
   // A number, to its last character, within the parameter's range.
   double value = 0;

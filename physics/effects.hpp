@@ -98,8 +98,8 @@ std::span<const EffectInfo> effect_catalogue();
 const EffectInfo* find_effect(std::string_view name);
 const EffectParameter* find_parameter(const EffectInfo& effect, std::string_view name);
 
-// `assignment`: "command_delay:delay_s=0.05". Throws std::invalid_argument, with the alternatives, if the effect or
-// parameter is unknown or the value is no number or out of range.
+// `assignment`: "command_delay:delay_s=0.05". Throws std::invalid_argument, with the alternatives and the one
+// that was probably meant, if the effect or parameter is unknown, or if the value is no number or out of range.
 void set_effect(Effects& effects, std::string_view assignment);
 
 }  // namespace kenaf::physics

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formats/settings/nearest_word.hpp"
 #include "gap/candidates/own_effects.hpp"
 #include "gap/diagnose/baseline.hpp"
 #include "gap/diagnose/channels.hpp"
@@ -29,6 +30,19 @@ std::vector<double> stated_noise(const runs::Dataset& dataset) {
   return stated;
 }
 
+// The names that --without knows: the catalogue's, and those of candidates that only this robot or the user has.
+void check_is_effect(const std::string& name, const std::vector<candidates::Candidate>& all, const std::string& robot) {
+  std::vector<std::string> names;
+  for (const physics::EffectInfo& effect : physics::effect_catalogue()) names.emplace_back(effect.name);
+  for (const candidates::Candidate& candidate : all) names.push_back(candidate.effect);
+  if (std::ranges::find(names, name) != names.end()) return;
+  const std::string_view nearest = settings::nearest_word(name, names);
+  throw std::invalid_argument(fmt::format("--without {}: no such effect; {}", settings::shown(name),
+                                          nearest.empty()
+                                              ? fmt::format("`kenaf-gap effects --robot {}` lists them", robot)
+                                              : fmt::format("did you mean {}?", nearest)));
+}
+
 // Catalogue, numbers of the description and user-defined effects, without those left out; of equivalent candidates the
 // first.
 std::vector<candidates::Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
@@ -38,11 +52,7 @@ std::vector<candidates::Candidate> candidates_for(const Observations& observatio
     std::ranges::move(candidates::read_own_effects(options.effects, robot), std::back_inserter(all));
   std::vector<std::string> left_out = options.without;
   for (const std::string& name : options.without) {
-    const bool is_known = physics::find_effect(name) != nullptr ||
-                          std::ranges::any_of(all, [&](const candidates::Candidate& c) { return c.effect == name; });
-    if (!is_known)
-      throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects --robot {}` lists them",
-                                              name, observations.robot.name));
+    check_is_effect(name, all, robot.name);
     for (const candidates::Candidate& c : all)
       if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }

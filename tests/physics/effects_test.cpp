@@ -125,6 +125,10 @@ TEST_CASE("An effect is set by name, and what is wrong is said") {
   };
   CHECK(error("command_delay=0.05").find("NAME:PARAMETER=VALUE") != std::string::npos);
   CHECK(error("comand_delay:delay_s=0.05").find("there are command_delay, command_loss") != std::string::npos);
+  CHECK_THAT(error("comand_delay:delay_s=0.05"), Catch::EndsWith("; did you mean command_delay?"));
+  CHECK_THAT(error("xyzzy:delay_s=0.05"), !Catch::Contains("did you mean"));
+  CHECK_THAT(error("drive_lag:lags_s=0.05"),
+             Catch::EndsWith("has no parameter \"lags_s\", but lag_s; did you mean lag_s?"));
   CHECK(error("command_delay:delay=0.05").find("no parameter \"delay\", but delay_s") != std::string::npos);
   CHECK(error("command_delay:delay_s=soon").find("\"soon\" is not a number") != std::string::npos);
   CHECK(error("command_delay:delay_s=9").find("from 0 to 1 s") != std::string::npos);

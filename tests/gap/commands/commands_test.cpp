@@ -103,6 +103,23 @@ TEST_CASE("A catalogue of which nothing is left is no catalogue") {
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST_CASE("A mistyped effect is named with the one that was probably meant") {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& arguments) {
+    const Outcome outcome = kenaf_gap(folder, arguments);
+    CHECK(outcome.status == 2);
+    CHECK_FALSE(std::filesystem::exists(folder / "out"));
+    return outcome.error;
+  };
+  CHECK_THAT(refused("simulate --manoeuvre straight --effect drive_lga:lag_s=0.1 --out out"),
+             Catch::StartsWith("kenaf-gap: effect \"drive_lga\": ") && Catch::EndsWith("; did you mean drive_lag?\n"));
+  REQUIRE(kenaf_gap(folder, "simulate --manoeuvre straight --out real").status == 0);
+  CHECK_THAT(refused("diagnose real --out out --without mass,drive_lga"),
+             Catch::EndsWith("--without drive_lga: no such effect; did you mean drive_lag?\n"));
+  CHECK_THAT(refused("diagnose real --out out --without xyzzy"),
+             Catch::EndsWith("--without xyzzy: no such effect; `kenaf-gap effects --robot kenaf` lists them\n"));
+}
+
 TEST_CASE("The time left is reckoned from what was done meanwhile, not from what was there before") {
   // a half in 60 s: another 60 s; of 0.6, of which 0.5 was there, a fifth of what there was to do: 4 times 60 s
   CHECK(gap::commands::time_left(0, 0.5, 60) == ", about 60 s left");
