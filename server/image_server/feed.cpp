@@ -75,7 +75,7 @@ struct Feed::Implementation {
 
   // For any thread, with the mutex.
   struct View {
-    Clock::time_point wanted;
+    Clock::time_point since, wanted;  // the first request, and the last one
     std::optional<CameraId> camera;
     std::string none;
   };
@@ -202,6 +202,8 @@ void Feed::Implementation::settle_views(const Exposure& exposure) {
     std::erase_if(views, [&](const auto& entry) { return entry.second.wanted < forgotten; });
     for (auto& [name, view] : views) {
       const auto camera = find_view(robots, name);
+      // An exposure from before the request may lack a robot that has come since; the next one is on its way.
+      if (!camera && exposure.wall < view.since) continue;
       std::string none = camera ? std::string() : no_such_view(robots, name);
       changed = changed || camera != view.camera || none != view.none;
       view.camera = camera;
@@ -389,6 +391,7 @@ Feed::Look Feed::look(std::string_view view) {
       if (impl_->views.size() >= kMostViews && !impl_->make_room())
         return {nullptr, "too many cameras are requested at the same time"};
       found = impl_->views.emplace(view, Implementation::View{}).first;
+      found->second.since = Clock::now();
       is_new = true;
     }
     Implementation::View& entry = found->second;

@@ -5,6 +5,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "tests/server/image_server/served_cameras.hpp"
 #include "tests/support/patience.hpp"
@@ -72,6 +75,23 @@ TEST_CASE("Cameras of one rate show the same moment") {
     return front && top && front->number > 2 && front->robot_time_s == top->robot_time_s;
   };
   CHECK(support::eventually(both));
+}
+
+TEST_CASE("A robot that is there is never called missing, however new it is") {
+  CameraWorld world("hills");  // long drawing: exposures from before the new robot are on their way
+  Robot first(world, "R1");
+  next_frame(world.feed, "R1/BirdsEye");
+  std::vector<std::unique_ptr<Robot>> others;
+  for (int i = 2; i <= 12; ++i) {
+    const std::string name = "R" + std::to_string(i), view = name + "/Camera";
+    others.push_back(std::make_unique<Robot>(world, name, std::to_string(2 * i) + ",0,0"));
+    CHECK(support::eventually([&] {
+      world.feed.look("R1/BirdsEye");
+      const Feed::Look seen = world.feed.look(view);
+      CHECK(seen.none == "");
+      return seen.frame != nullptr || !seen.none.empty();
+    }));
+  }
 }
 
 TEST_CASE("Nothing is drawn while nobody looks, nor 2 s after the last look") {
