@@ -3,7 +3,7 @@ const PROTOCOL = 2;
 // A state comes 30 times a second, also while the world is paused. Silence is counted, not read off the clock: a page that was held
 // up itself has missed beats too, and has not read yet what came meanwhile.
 const BEAT_MS = 100, SILENT_BEATS = 6;
-const PING_MS = 500, MOST_PINGS = 100;
+const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.
@@ -12,10 +12,11 @@ export function address(path) {
 }
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.
-// `roundTrip_ms()`: from a word to its answer; null before the first. `newestAge_ms()`: of the newest message, since it left the server.
+// `roundTrip_ms()`: from a word to its answer; null before the first. `way_ms()`: from the server to here, without what waited for this
+// page; 0 before it is known. `newestAge_ms()`: of the newest message, since it left the server.
 export function connect(listeners) {
-  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, newestAge_ms };
-  let socket = null, answered_ms = null, unanswered = [];   // pings: how long the newest answered one took; when the others were sent
+  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, way_ms, newestAge_ms };
+  let socket = null, answered_ms = null, unanswered = [], recent_ms = [];   // pings: how long the newest answered one took; when the others were sent
   let number = null, server = null, beats = 0;
 
   function send(message) {
@@ -26,6 +27,11 @@ export function connect(listeners) {
   function roundTrip_ms() {
     const waits_ms = unanswered.length ? performance.now() - unanswered[0] : 0;
     return answered_ms === null ? (unanswered.length ? waits_ms : null) : Math.max(answered_ms, waits_ms);
+  }
+
+  // Half of the least of the last round trips: the others have waited, here or in a queue.
+  function way_ms() {
+    return recent_ms.length ? Math.min(...recent_ms) / 2 : 0;
   }
 
   // Half of the round trip is taken for the way from the server.
@@ -50,6 +56,7 @@ export function connect(listeners) {
     }
     if (message.type === "pong") {
       answered_ms = performance.now() - message.t;
+      recent_ms = [...recent_ms, answered_ms].slice(-RECENT_PINGS);
       unanswered = unanswered.filter((sent_ms) => sent_ms > message.t);
     }
     if (message.type === "state") {

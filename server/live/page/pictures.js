@@ -12,17 +12,18 @@ export function createPictures(world, link, chosen, bigView) {
   const section = document.getElementById("pictures");
   let started = false, shown = "", figures = [];
 
-  // When the camera saw the frame, by this page's clock: by the states, which say when the server had it, and by its own stamp. The
-  // stamp is from when it was sent, so it lacks the time that the picture waited on its way; the earlier of the two is right.
+  // When the camera saw the frame, by this page's clock, later by the way: by the states, which say when the server had it, and by its own
+  // stamp. The stamp is from when it was sent, so it lacks the time that the picture waited on its way; the earlier of the two is right.
   function seen_ms(figure, part) {
-    const way_ms = (link.roundTrip_ms() ?? 0) / 2, stamped_ms = performance.now() - way_ms - part.age_ms;
-    return Math.min(stamped_ms, figure.seen.get(part.number) ?? Infinity);
+    return Math.min(performance.now() - part.age_ms, figure.seen.get(part.number) ?? Infinity);
   }
   function note(figure, camera) {
     if (camera?.n === undefined || figure.seen.has(camera.n)) return;
-    figure.seen.set(camera.n, performance.now() - (link.roundTrip_ms() ?? 0) / 2 - 1000 * camera.age);
+    figure.seen.set(camera.n, performance.now() - 1000 * camera.age);
     if (figure.seen.size > KEPT) figure.seen.delete(figure.seen.keys().next().value);
   }
+  // With the way as it is known now: that of a page that has just been busy is corrected by the next answer.
+  const age_ms = (figure) => performance.now() - figure.seen_ms + link.way_ms();
 
   function show(figure, part) {
     figure.jpeg = new Blob([part.jpeg], { type: "image/jpeg" });
@@ -83,7 +84,7 @@ export function createPictures(world, link, chosen, bigView) {
     bigView.built([...section.children]);
   }
 
-  const ages_ms = () => figures.filter((figure) => figure.seen_ms !== null).map((figure) => performance.now() - figure.seen_ms);
+  const ages_ms = () => figures.filter((figure) => figure.seen_ms !== null).map(age_ms);
 
   function update() {
     const robot = chosen();
@@ -100,9 +101,9 @@ export function createPictures(world, link, chosen, bigView) {
     figures.forEach((figure, i) => {
       note(figure, robot.now?.cameras?.[i]);
       if (figure.seen_ms === null) return;
-      const age_ms = performance.now() - figure.seen_ms;
-      figure.age.textContent = age_ms < 10000 ? `${age_ms.toFixed(0)} ms` : `${(age_ms / 1000).toFixed(0)} s`;
-      figure.age.dataset.state = age_ms > OLD_MS && !world.paused ? "bad" : "good";
+      const ms = age_ms(figure);
+      figure.age.textContent = ms < 10000 ? `${ms.toFixed(0)} ms` : `${(ms / 1000).toFixed(0)} s`;
+      figure.age.dataset.state = ms > OLD_MS && !world.paused ? "bad" : "good";
     });
   }
 

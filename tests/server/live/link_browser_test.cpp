@@ -106,4 +106,26 @@ TEST_CASE("In a browser, 250 ms from its server: an alarm, and the true age of t
   CHECK(desk.browser.evaluate("Math.min(..." + ages + ")") >= 250);
 }
 
+TEST_CASE("In a browser: what waited for a page that was held up was not on its way for so long") {
+  Desk desk;
+  // A link of its own, whose page is busy for a second right after a ping, when it knows its way already.
+  const json seen = desk.browser.evaluate(R"(new Promise((done) => import("/connection.js").then(({ connect }) => {
+    const Socket = WebSocket;
+    let socket = null, before_ms = 0;
+    window.WebSocket = class extends Socket { constructor(url) { super(url); socket = this; } };
+    const link = connect({ open() {}, closed() {},
+                           state() { if (before_ms) done([before_ms, link.way_ms(), link.roundTrip_ms()]); } });
+    window.WebSocket = Socket;
+    socket.send = (text) => {
+      Socket.prototype.send.call(socket, text);
+      if (before_ms || !text.includes("ping") || !link.way_ms()) return;
+      before_ms = link.way_ms();
+      for (const end = performance.now() + 1000; performance.now() < end;);
+    };
+  })))");
+  CHECK(seen[1] == seen[0]);
+  CHECK(seen[2] >= 1000);
+  CHECK(desk.browser.complaints().empty());
+}
+
 }  // namespace kenaf::live
