@@ -5,7 +5,7 @@ import { colour } from "./scene.js";
 
 const M_PER_N = 0.004;       // length of an arrow
 const LEAST_N = 0.02;        // less is no arrow
-const POINT_M = 0.007, SHAFT_M = 0.003, HEAD_M = 0.009;   // half widths
+const POINT_M = 0.01, SHAFT_M = 0.004, HEAD_M = 0.012;   // half widths
 const MOST = 2048;           // points that are drawn; the sum has all
 const CORNERS = 36 + 24;     // of the triangles of an arrow and its point
 const MEAN_OF = 8;           // states: about a quarter of a second. A step's forces are spikes where a lug meets an edge.

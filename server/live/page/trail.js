@@ -5,7 +5,7 @@ import { colour } from "./scene.js";
 const STEP_M = 0.03;         // from place to place; between them nothing is kept
 const MOST = 4000;           // places: 120 m
 const KEPT_S = 300;          // of robot time
-const HALF_WIDTH_M = 0.012;
+const HALF_WIDTH_M = 0.02;
 const OVER_GROUND_M = 0.012;
 const HUES = ["--c1", "--c2", "--accent", "--c3"];
 

@@ -59,6 +59,16 @@
     all.sort((a, b) => a - b);
     return (all[Math.floor(0.8 * all.length)] + 0.05) / (all[Math.floor(0.2 * all.length)] + 0.05);
   };
+  // How many of its pixels are others than in the picture that was kept; none, and that picture is kept, where it has another size.
+  let kept = null;
+  window.keepCanvas = async () => { kept = await canvasPixels(); return true; };
+  window.canvasChanges = async () => {
+    const now = await canvasPixels();
+    if (now.width !== kept?.width || now.height !== kept.height) { kept = now; return 0; }
+    let count = 0;
+    for (let i = 0; i < now.data.length; i += 4) count += [0, 1, 2].some((k) => Math.abs(now.data[i + k] - kept.data[i + k]) > 24) ? 1 : 0;
+    return count;
+  };
   // How many of its pixels have that colour of the page's style, within `off` in each channel.
   window.canvasCount = async (name, off) => {
     const { data } = await canvasPixels(), pen = document.createElement("canvas").getContext("2d");

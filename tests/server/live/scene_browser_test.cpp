@@ -100,8 +100,13 @@ TEST_CASE("In a browser: the ground's forces on a robot that stands add up to it
   CHECK(words.find("Ground on Manual1: 196.") == 0);
   CHECK(words.find("tracks 196.") != std::string::npos);
   CHECK(words.find("flippers") == std::string::npos);  // they are raised
-  // arrows and points, over the robot
-  desk.wait_for_promise("canvasCount('--force-tracks', 3).then((count) => count > 20)");
+  desk.browser.screenshot(desk.pictures / "forces.png");
+
+  // arrows and points, over the robot: without them the picture is another
+  desk.wait_for_promise(
+      "(async () => { const button = document.getElementById('show-forces'); await keepCanvas(); button.click();"
+      "  await canvasPixels(); const count = await canvasChanges(); button.click(); return count > 10; })()");
+  CHECK(desk.pressed("show-forces"));
   desk.browser.screenshot(desk.pictures / "forces.png");
 
   // kept over a reload, switched off by the same key
