@@ -52,12 +52,12 @@
     };
     requestAnimationFrame(look);
   });
-  // The contrast between its 80th and its 20th percentile, between two rows as shares of its height: lines alone make none.
+  // The contrast between its 70th and its 30th percentile, between two rows as shares of its height: lines alone make none.
   window.canvasContrast = async (from, to) => {
     const { width, height, data } = await canvasPixels(), all = [];
     for (let i = Math.floor(from * height) * width; i < Math.floor(to * height) * width; ++i) all.push(luminance([data[4 * i], data[4 * i + 1], data[4 * i + 2]]));
     all.sort((a, b) => a - b);
-    return (all[Math.floor(0.8 * all.length)] + 0.05) / (all[Math.floor(0.2 * all.length)] + 0.05);
+    return (all[Math.floor(0.7 * all.length)] + 0.05) / (all[Math.floor(0.3 * all.length)] + 0.05);
   };
   // How many of its pixels are others than in the picture that was kept; none, and that picture is kept, where it has another size.
   let kept = null;
