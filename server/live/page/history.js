@@ -19,12 +19,12 @@ export function createHistory({ kept_s = KEPT_S, mostBodies = MOST_BODIES } = {}
   // Without what is shown live alone, and would take more than all else.
   const kept = ({ contacts, scans, imu, ...state }) => state;
 
-  // Keeps what `world` is now. Time that begins anew, after a reset, begins a new history.
+  // Keeps what `world` is now. Time that begins anew, after a reset, begins a new history; then it returns true.
   function take(world) {
     const moment = { t: world.time_s, robots: new Map(), boxes: world.boxes.map(({ about, now }) => ({ about, now })), gap: interrupted };
     for (const [id, { about, now }] of world.robots) if (now) moment.robots.set(id, { about, now: kept(now) });
-    const last = moments.length - 1;
-    if (last >= 0 && moment.t < moments[last].t) clear();
+    const last = moments.length - 1, anew = last >= 0 && moment.t < moments[last].t;
+    if (anew) clear();
     else if (last >= 0 && (moment.t === moments[last].t || isClose(last, sizeOf(moment)))) {
       moment.gap ||= moments[last].gap;
       drop(last);
@@ -33,6 +33,7 @@ export function createHistory({ kept_s = KEPT_S, mostBodies = MOST_BODIES } = {}
     moments.push(moment);
     bodies += sizeOf(moment);
     while (moments.length > 1 && (moments[0].t < moment.t - kept_s || bodies > mostBodies)) drop(0);
+    return anew;
   }
 
   // The newest moment is always kept. Once another follows, it stays if it is far enough from the one before it for all of `kept_s` to fit.

@@ -62,8 +62,7 @@ export function createPanels({ world, driving, view, jpeg, complain }) {
     interrupt: history.interrupt,
     bigView,
     update() {
-      history.take(world);
-      past.update();
+      past.update(history.take(world));
       show();
     },
   };

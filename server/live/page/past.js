@@ -54,9 +54,9 @@ export function createPast(world, history, { begin, show, mine }) {
     isBack: () => at_s !== null,
     // What is shown, in robot time.
     shown_s: () => at_s ?? history.last_s(),
-    // After each state of the world: what was looked at may be forgotten by now, or a reset may have ended it.
-    update() {
-      if (at_s !== null && at_s > history.last_s()) at_s = null;
+    // After each state of the world: what was looked at may be forgotten by now. `anew`: all of it, as the time began anew.
+    update(anew) {
+      if (anew) at_s = null;
       if (at_s !== null) at_s = Math.max(at_s, history.first_s());
       setSeen();
     },
