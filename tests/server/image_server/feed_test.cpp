@@ -84,7 +84,7 @@ TEST_CASE("A robot that is there is never called missing, however new it is") {
   std::vector<std::unique_ptr<Robot>> others;
   for (int i = 2; i <= 12; ++i) {
     const std::string name = "R" + std::to_string(i), view = name + "/Camera";
-    others.push_back(std::make_unique<Robot>(world, name, std::to_string(2 * i) + ",0,0"));
+    others.push_back(std::make_unique<Robot>(world, name, std::to_string(-2 * i) + ",0,0"));
     CHECK(support::eventually([&] {
       world.feed.look("R1/BirdsEye");
       const Feed::Look seen = world.feed.look(view);
