@@ -25,9 +25,12 @@ SIZES = (1280, 720, False), (1440, 900, False), (844, 390, True), (390, 844, Tru
 WORLDS = 'flat', 'hills', 'rubble-mesh'
 ROBOTS = 0, 1, 4
 
-# axe.run() with all rules but those it calls experimental; target-size (WCAG 2.2, 2.5.8) is off by itself.
-RUN_AXE = '''axe.run(document, {rules: {'target-size': {enabled: true}}, resultTypes: ['violations'], selectors: true, iframes: false})
-  .then(({violations}) => violations.flatMap(({id, help, nodes}) => nodes.map(({target}) => [`${id} (${help})`, target.join(' ')])))'''
+# axe.run() with all rules but those it calls experimental; target-size (WCAG 2.2, 2.5.8) is off by itself. The playback's
+# marks are as wide as their time, which is essential there; a pointer is taken by the whole lane that they are in.
+RUN_AXE = '''axe.run(document, {rules: {'target-size': {enabled: true}}, resultTypes: ['violations'], selectors: true, elementRef: true, iframes: false})
+  .then(({violations}) => violations.flatMap(({id, help, nodes}) => nodes
+    .filter(({element}) => !(id === 'target-size' && element.matches('#marks > .mark')))
+    .map(({target}) => [`${id} (${help})`, target.join(' ')])))'''
 RUN_PAGE_CHECKS = '''['overlaps', 'pale', 'nameless', 'small'].flatMap((rule) => window[rule]().map((what) => [rule, what]))'''
 IS_DRAWN = 'new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(() => drawn(true))))'
 
@@ -39,7 +42,8 @@ class Page:
     prepare: typing.Callable[[Browser], None] = lambda browser: None
     ready: typing.Callable[[Browser], None] = lambda browser: None  # before each look
     switches: tuple = ()  # of the browser
-    is_one_screen: bool = True  # laid out as a whole, so that nothing in it may cover anything: not a document
+    has_page_checks: bool = True  # page_checks.js is of the live view's layout, in which nothing covers anything or scrolls
+    expected: str = ''  # what the browser complains of there
 
 
 HAS_PICTURES = ("document.querySelectorAll('#pictures img').length === 2 && "
@@ -125,12 +129,12 @@ PAGES = [
     *(Page(f'live-{world}-{robots}', live(world), place(robots), held if robots else connected) for world in WORLDS for robots in ROBOTS),
     Page('live-keys', live('flat'), press('help-open'), connected),
     Page('live-question', live('flat'), press('remove'), connected),
-    Page('live-cameras', live('step-200'), place(1), held, ('--disable-3d-apis',)),
-    Page('play', play, played),
-    Page('play-curves', play, curves),
-    Page('report', file_of('diagnosis/report.html'), is_one_screen=False),
-    Page('report-no-gap', file_of('no-gap/report.html'), is_one_screen=False),
-    Page('compare', file_of('compared/compare.html'), is_one_screen=False),
+    Page('live-cameras', live('step-200'), place(1), held, ('--disable-3d-apis',), expected='WebGL'),
+    Page('play', play, played, has_page_checks=False),
+    Page('play-curves', play, curves, has_page_checks=False),
+    Page('report', file_of('diagnosis/report.html'), has_page_checks=False),
+    Page('report-no-gap', file_of('no-gap/report.html'), has_page_checks=False),
+    Page('compare', file_of('compared/compare.html'), has_page_checks=False),
 ]
 
 
@@ -170,11 +174,13 @@ def look_at(page, build, axe_source):
                 page_width = browser.evaluate('document.documentElement.scrollWidth')
                 if page_width > width:
                     findings.append(('wider than the screen', f'html, {page_width}'))
-                if page.is_one_screen:
+                if page.has_page_checks:
                     findings += browser.evaluate(RUN_PAGE_CHECKS)
                 for rule, selector in findings:
                     found[rule, selector].append(where)
         for complaint in browser.complaints:
+            if page.expected and page.expected in complaint:
+                continue
             found['the browser complains', complaint].append('at any size')
     return found
 

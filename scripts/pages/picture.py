@@ -26,7 +26,8 @@ def picture_of_live_view(build, png):
                              ".find((term) => term.textContent === name).nextElementSibling.textContent)")
             if code != 'KeyW':
                 browser.key(code, False)
-        browser.wait_for("[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth === 640)")
+        browser.wait_for("document.getElementById('alarm').hidden && "
+                         "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth === 640)")
         browser.screenshot(png)
         browser.key('KeyW', False)
 

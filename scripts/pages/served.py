@@ -14,7 +14,7 @@ def environment(build):
 
 @contextlib.contextmanager
 def served(build, pattern, *command):
-    """Runs a server; gives what the pattern's group matches in its output, once it does."""
+    """Runs a server; gives its process number, and what the pattern's group matches in its output once it does."""
     with tempfile.TemporaryFile() as log:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment(build))
         try:
@@ -26,18 +26,28 @@ def served(build, pattern, *command):
                 if process.poll() is not None or time.monotonic() > end:
                     raise RuntimeError(f"'{' '.join(map(str, command))}' did not say '{pattern}' but:\n{said}")
                 time.sleep(0.05)
-            yield match[1]
+            yield match[1], process.pid
         finally:
             process.terminate()
             process.wait()
 
 
-def live_view(build, world):
-    """The address of a live view with the world and no robot."""
+def live_server(build, world):
+    """The address of a live view with the world and no robot, and the number of its process."""
     return served(build, r'live view: (http\S+)', 'kenaf-world', '--world', world, '--port', '0', '--camera-port', '0', '--view', '127.0.0.1:0')
 
 
+@contextlib.contextmanager
+def live_view(build, world):
+    """The same address alone."""
+    with live_server(build, world) as (url, _):
+        yield url
+
+
+@contextlib.contextmanager
 def playback(build, runs, report, run=None):
     """The address of a page that plays the runs beside their simulations."""
     first = ['--run', run] if run else []
-    return served(build, r'(http\S+)', 'kenaf-gap', 'play', str(runs), '--report', str(report), '--view', '127.0.0.1:0', *first)
+    command = ['kenaf-gap', 'play', str(runs), '--report', str(report), '--view', '127.0.0.1:0', *first]
+    with served(build, r'(http\S+)', *command) as (url, _):
+        yield url

@@ -27,7 +27,7 @@ export function createReadings() {
     if (!simulated.length) return;
     table.createCaption().textContent = "Simulated minus recorded";
     const head = table.createTHead().insertRow();
-    head.append(document.createElement("th"), ...simulated.map((body) => {
+    head.append(document.createElement("td"), ...simulated.map((body) => {
       const name = document.createElement("th");
       name.scope = "col";
       name.textContent = body.kind;
