@@ -33,7 +33,11 @@ static int exercise(void) {
   return moved_badly("all up", hrt_set_flipper(HRT_ALL_FLIPPERS, 60));
 }
 
-int main(void) {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    fprintf(stderr, "flipper_exercise: not expected: %s; there are no arguments\n", argv[1]);
+    return 2;
+  }
   if (failed("init", hrt_kenaf_init())) return 1;
   int bad = exercise();
   return failed("close", hrt_close()) || bad;

@@ -62,7 +62,11 @@ static int climb(void) {
   return 1;
 }
 
-int main(void) {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    fprintf(stderr, "obstacle_drive: not expected: %s; there are no arguments\n", argv[1]);
+    return 2;
+  }
   if (!check("init", hrt_kenaf_init())) return 1;
   int done = climb();
   return check("close", hrt_close()) && done ? 0 : 1;

@@ -1,5 +1,7 @@
 /* Saves pictures of one of the robot's cameras as JPEG files, without moving the robot, and says how old each was.
- * Usage: save_picture [CAMERA [COUNT]]; default: the robot's first camera, 1. Writes picture-NUMBER.jpg here. */
+ * Usage: save_picture [CAMERA [COUNT]]; default: the robot's first camera, 1. Writes picture-NUMBER.jpg here.
+ * Exit status 2: wrong arguments. */
+#include <ctype.h>
 #include <inttypes.h>
 #include <kenaf/hrt.h>
 #include <stdio.h>
@@ -22,9 +24,20 @@ static int save(const unsigned char* file, const hrt_picture* picture) {
   return 1;
 }
 
+/* A whole number from 1 to 1000000; 0 of any other text. */
+static int count_from(const char* text) {
+  char* end = NULL;
+  long count = strtol(text, &end, 10);
+  return isdigit((unsigned char)*text) && *end == '\0' && count >= 1 && count <= 1000000 ? (int)count : 0;
+}
+
 int main(int argc, char** argv) {
   const char* camera = argc > 1 ? argv[1] : NULL;
-  int count = argc > 2 ? atoi(argv[2]) : 1;
+  int count = argc > 2 ? count_from(argv[2]) : 1;
+  if (argc > 3 || count == 0 || (camera != NULL && *camera == '-')) {
+    fprintf(stderr, "usage: save_picture [CAMERA [COUNT]], COUNT a whole number from 1 to 1000000\n");
+    return 2;
+  }
   size_t capacity = 1 << 20;
   unsigned char* file = malloc(capacity);
   hrt_config config = hrt_config_default();

@@ -10,7 +10,11 @@ static int failed(const char* what, int result) {
   return 1;
 }
 
-int main(void) {
+int main(int argc, char** argv) {
+  if (argc > 1) {
+    fprintf(stderr, "square: not expected: %s; there are no arguments\n", argv[1]);
+    return 2;
+  }
   if (failed("init", hrt_kenaf_init())) return 1;
   for (int side = 0; side < 4; ++side) {
     if (failed("forward", hrt_go_forward(100)) || failed("turn", hrt_turning(90))) {

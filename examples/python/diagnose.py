@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """Finds what differs between a robot and its simulation, and drives the corrected one.
 
-Without an argument a simulation plays the robot, with another time step and drives that lag. `diagnose.py FOLDER`
-diagnoses a dataset of your own."""
+Without an argument a simulation plays the robot, with another time step and drives that lag."""
 
-import sys
+import argparse
 
 import kenaf
 
-if len(sys.argv) > 1:
-    dataset = kenaf.read_runs(sys.argv[1])
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("folder", nargs="?", help="a dataset of your own")
+folder = parser.parse_args().folder
+if folder:
+    dataset = kenaf.read_runs(folder)
 else:
     other = {"time_step_s": 0.0005, "solver_iterations": 20}
     asked = [

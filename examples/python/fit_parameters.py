@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """Fits two numbers of the simulated robot to recorded runs by Gauss-Newton, with all simulations on all cores.
 
-Without an argument a simulation plays the robot: its drives lag, and its tracks are further apart than described.
-`fit_parameters.py FOLDER` fits a dataset of your own."""
+Without an argument a simulation plays the robot: its drives lag, and its tracks are further apart than described."""
 
-import sys
+import argparse
 
 import numpy as np
 import numpy.typing as npt
@@ -17,8 +16,11 @@ CHANNELS = ["track_left_mps", "track_right_mps", "yaw_rad"]
 RESTING_ROWS = 50  # in which the robot stands before it drives
 Vector = npt.NDArray[np.float64]
 
-if len(sys.argv) > 1:
-    recorded = list(kenaf.read_runs(sys.argv[1]))
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("folder", nargs="?", help="a dataset of your own")
+folder = parser.parse_args().folder
+if folder:
+    recorded = list(kenaf.read_runs(folder))
 else:
     truth = {"drive_lag": 0.06, "track.separation_m": 0.21}
     recorded = [kenaf.simulate(name, values=truth, seed=7) for name in ("speed-steps", "turn-in-place")]

@@ -4,9 +4,13 @@
 A drive that closes its speed loop within T answers a sine of frequency f with gain 1 / sqrt(1 + (2 pi f T)^2) and phase
 -atan(2 pi f T)."""
 
+import argparse
+
 import numpy as np
 
 import kenaf
+
+argparse.ArgumentParser(description=__doc__).parse_args()  # there are no arguments
 
 PERIOD_S, SAMPLE_S = 10.0, 0.01
 FREQUENCIES_HZ = np.array([0.2, 0.5, 1.1, 1.9])  # whole numbers of periods in PERIOD_S

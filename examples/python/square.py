@@ -3,7 +3,11 @@
 
 Start `kenaf-relayd --embedded` before."""
 
+import argparse
+
 from kenaf import hrt
+
+argparse.ArgumentParser(description=__doc__).parse_args()  # there are no arguments
 
 try:
     with hrt.Session():

@@ -2,16 +2,26 @@
 """How often does a manoeuvre succeed if the robot is placed by hand and the ground's friction is uncertain?
 
 Simulates it on all cores, each time from another start and with another friction, and prints the share of successes with
-its 95 % interval (Wilson 1927). `success_rate.py [MANOEUVRE [COUNT]]`"""
+its 95 % interval (Wilson 1927)."""
 
-import sys
+import argparse
 
 import numpy as np
 
 import kenaf
 
-manoeuvre = sys.argv[1] if len(sys.argv) > 1 else "step-200-flippers"
-count = int(sys.argv[2]) if len(sys.argv) > 2 else 40
+
+def count_from(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 100000:
+        raise argparse.ArgumentTypeError(f"'{text}' must be a whole number from 1 to 100000")
+    return int(text)
+
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("manoeuvre", nargs="?", default="step-200-flippers")
+parser.add_argument("count", nargs="?", type=count_from, default=40, help="of drives; from 1 to 100000")
+arguments = parser.parse_args()
+manoeuvre, count = arguments.manoeuvre, arguments.count
 friction = np.random.default_rng(1).uniform(0.4, 1.0, count)
 runs = kenaf.simulate_all(
     [

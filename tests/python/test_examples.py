@@ -39,6 +39,18 @@ class Examples(unittest.TestCase):
         with self.assertRaisesRegex(AssertionError, "ended with 1: square: no relay at 127.0.0.1:9"):
             run("square.py", KENAF_RELAY="127.0.0.1:9", KENAF_CONNECT_TIMEOUT_S="0.05")
 
+    def test_arguments_that_an_example_does_not_take_are_refused(self) -> None:
+        for name, arguments, words in (
+            ("square.py", ["--help-me"], "unrecognized arguments: --help-me"),
+            ("frequency_response.py", ["2"], "unrecognized arguments: 2"),
+            ("diagnose.py", ["real", "sim"], "unrecognized arguments: sim"),
+            ("fit_parameters.py", ["real", "sim"], "unrecognized arguments: sim"),
+            ("success_rate.py", ["step-100", "0"], "'0' must be a whole number from 1 to 100000"),
+            ("success_rate.py", ["step-100", "many"], "'many' must be a whole number from 1 to 100000"),
+        ):
+            with self.subTest(name), self.assertRaisesRegex(AssertionError, f"{name} ended with 2: (.|\n)*{words}"):
+                run(name, *arguments)
+
     def test_the_frequency_response_has_the_described_time_constant(self) -> None:
         for line in run("frequency_response.py").splitlines():
             frequency_hz, gain, phase_deg, time_constant_s = numbers(line)
