@@ -12,6 +12,7 @@
 #include <string>
 
 #include "hrt/config.hpp"
+#include "tests/support/patience.hpp"
 
 using namespace kenaf::settings;
 
@@ -121,4 +122,15 @@ TEST_CASE("The process's own variables have the values that getenv() has") {
   CHECK(own.at("KENAF_HOLD_S") == "a=b");
   REQUIRE(::unsetenv("KENAF_HOLD_S") == 0);
   CHECK_FALSE(own_environment().contains("KENAF_HOLD_S"));
+}
+
+TEST_CASE("How long a test waits is a whole number of seconds up to a day") {
+  using kenaf::support::patience_from;
+  CHECK(patience_from("1") == std::chrono::seconds(1));
+  CHECK(patience_from("86400") == std::chrono::hours(24));
+  for (const char* wrong : {"", "0", "-5", "86401", "99999999999", "60s", "1.5", " 60", "nan"}) {
+    INFO(wrong);
+    CHECK_THROWS_WITH(patience_from(wrong), Catch::Contains("KENAF_PATIENCE_S=" + std::string(wrong) +
+                                                            ": must be a whole number of seconds"));
+  }
 }
