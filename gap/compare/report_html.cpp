@@ -80,7 +80,8 @@ std::vector<std::size_t> drawn_runs(const Comparison& comparison) {
 
 std::string summary_table(const Comparison& comparison, const std::vector<std::size_t>& drawn) {
   std::string html =
-      "<div class=\"tables\"><table>\n<tr><th rowspan=\"3\">run</th><th rowspan=\"3\">frames</th>"
+      "<div class=\"tables\" role=\"group\" aria-label=\"Table\" tabindex=\"0\"><table>\n<tr><th "
+      "rowspan=\"3\">run</th><th rowspan=\"3\">frames</th>"
       "<th class=\"group\" colspan=\"12\">matched frames</th><th class=\"group\" colspan=\"9\">same "
       "time</th></tr>\n<tr>"
       "<th class=\"group\" colspan=\"3\">position (mm)</th><th class=\"group\" colspan=\"3\">pitch (deg)</th>"
@@ -107,7 +108,8 @@ std::string summary_table(const Comparison& comparison, const std::vector<std::s
 std::string quantities_table(const ComparedRun& run) {
   const RunErrors& errors = run.errors;
   std::string html =
-      "<div class=\"tables\"><table>\n<tr><th rowspan=\"2\">error</th>"
+      "<div class=\"tables\" role=\"group\" aria-label=\"Table\" tabindex=\"0\"><table>\n<tr><th "
+      "rowspan=\"2\">error</th>"
       "<th class=\"group\" colspan=\"3\">matched frames</th><th class=\"group\" colspan=\"3\">same time</th>"
       "<th class=\"group\">at the end</th></tr>\n<tr>";
   for (int i = 0; i < 2; ++i) html += "<th class=\"first\">mean</th><th>RMS</th><th>max</th>";
@@ -185,7 +187,7 @@ std::string comparison_html(const Comparison& comparison) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Real and simulated "
       "runs</title>\n"
-      "<style>\n{}{}</style>\n</head>\n<body>\n<h1>Real and simulated runs</h1>\n",
+      "<style>\n{}{}</style>\n</head>\n<body>\n<main>\n<h1>Real and simulated runs</h1>\n",
       plot::style_sheet(), kPageStyle);
   html += dataset_line("Real", comparison.real, comparison.real_folder);
   html += dataset_line("Simulated", comparison.sim, comparison.sim_folder);
@@ -196,7 +198,7 @@ std::string comparison_html(const Comparison& comparison) {
       "their delay. Two columns show the delay: time difference (of the matched simulated frame; it means little while "
       "the robot is at rest) and same time (errors without matching). All values are absolute.</p>\n";
   for (const std::string& note : worlds.notes) html += fmt::format("<p>{}</p>\n", escaped(note));
-  return html + summary_table(comparison, drawn) + sections + left_out_list(comparison) + "</body>\n</html>\n";
+  return html + summary_table(comparison, drawn) + sections + left_out_list(comparison) + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace kenaf::gap::compare

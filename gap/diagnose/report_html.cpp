@@ -17,7 +17,7 @@ h1 { font-size: 25px; line-height: 1.25; margin: 2px 0 10px; } h2 { font-size: 1
 h3 { font-size: 15px; margin: 22px 0 2px; } h3 .soft { font-weight: 400; }
 p { margin: 6px 0; max-width: 88ch; } ul { margin: 6px 0; padding-left: 22px; max-width: 88ch; }
 .soft { color: var(--soft); } a { color: var(--real); }
-nav { margin: 14px 0; font-size: 13px; } nav a { margin-right: 14px; white-space: nowrap; }
+nav { margin: 14px 0; font-size: 13px; display: flex; flex-wrap: wrap; gap: 2px 14px; } nav a { white-space: nowrap; line-height: 24px; }
 .verdict { border-left: 5px solid var(--real); padding: 4px 0 4px 18px; margin: 16px 0; }
 .word { text-transform: uppercase; letter-spacing: 0.08em; font-size: 13px; font-weight: 600; color: var(--real); }
 .warning { border-left: 5px solid var(--sim); padding-left: 12px; } ul.warning { padding-left: 28px; }
@@ -65,6 +65,7 @@ details { margin: 16px 0; } summary { cursor: pointer; font-weight: 600; }
 .angles td:focus-visible { outline: 3px solid var(--ink); outline-offset: -2px; }
 .angles > input:not(:checked) ~ * .rest, .angles.whole > input:not(:checked) ~ * { display: none; }
 .angles.whole > label { display: inline !important; }
+@media (max-width: 40em) { dl { grid-template-columns: 1fr; gap: 4px; } dd { margin: 0 0 8px; } .share { width: 60px; } }
 @media print { body { max-width: none; } nav { display: none; } svg.chart, tr, .verdict { break-inside: avoid; }
   h2, h3 { break-after: avoid; } .tables { overflow: visible; } .tables svg.chart { max-width: 100%; }
   table { font-size: 10px; } th, td, td.text { padding: 2px 4px; white-space: normal; max-width: none; overflow-wrap: break-word; }
@@ -91,7 +92,7 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Gap diagnosis: {}</title>\n"
-      "<style>\n{}{}</style>\n</head>\n<body>\n<p class=\"soft\">Diagnosis of the gap between a robot and its "
+      "<style>\n{}{}</style>\n</head>\n<body>\n<main>\n<p class=\"soft\">Diagnosis of the gap between a robot and its "
       "simulation. {}</p>\n",
       d.interrupted.empty() ? verdict_name(d.verdict) : "unfinished", plot::style_sheet(), kPageStyle,
       plot::escaped(d.observations.dataset.description));
@@ -100,7 +101,7 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
   html += answer_section(d) + contents(d, !worst.empty());
   for (std::size_t s = 0; s < d.stages.size(); ++s) html += stage_section(d, s);
   html += where_section(d, overlays, moments) + worst + overlay_section(d, overlays) + next_section(d);
-  html += used_section(d, overlays) + method_section(d);
+  html += used_section(d, overlays) + method_section(d) + "</main>\n";
   // scripts last: the page is whole without them
   for (const std::string_view script : {moment_player_script(), confusability_script()})
     html += fmt::format("<script>//<![CDATA[\n{}//]]></script>\n", script);

@@ -39,7 +39,8 @@ std::string bullets(const std::vector<std::string>& items) {
 // One row per stage, with its share of the gap as a bar: explained by the best model, and left.
 std::string stages_at_a_glance(const Diagnosis& d) {
   std::string html =
-      "<table class=\"glance\">\n<tr><th class=\"text\">stage</th><th class=\"text\">share of the whole gap</th>"
+      "<div class=\"tables\" role=\"group\" aria-label=\"Stages\" tabindex=\"0\"><table class=\"glance\">\n<tr><th "
+      "class=\"text\">stage</th><th class=\"text\">share of the whole gap</th>"
       "<th class=\"text\">verdict</th><th class=\"text\">explained</th></tr>\n";
   for (std::size_t s = 0; s < d.stages.size(); ++s) {
     // the bar: length by the stage's share of the gap, split into explained and left
@@ -67,7 +68,8 @@ std::string stages_at_a_glance(const Diagnosis& d) {
 
   // a key to the two colours
   return html +
-         "</table>\n<p class=\"soft key\"><span class=\"gone\"></span> explained by the best model, on held-out runs "
+         "</table></div>\n<p class=\"soft key\"><span class=\"gone\"></span> explained by the best model, on held-out "
+         "runs "
          "<span class=\"left\"></span> left unexplained</p>\n";
 }
 

@@ -142,7 +142,8 @@ std::string matrix(const StageDiagnosis& stage, const Angles& angles) {
   html += fmt::format("<p class=\"readout\" role=\"status\" hidden=\"hidden\" data-usual=\"{}\"></p>\n",
                       "Point at a cell, or reach the table by Tab and go on by the arrow keys.");
   html += fmt::format(
-      "<div class=\"tables\"><table>\n<caption>Angle between the shifts of two effects, in degrees. 0: "
+      "<div class=\"tables\" role=\"group\" aria-label=\"Angles\" tabindex=\"0\"><table>\n<caption>Angle between the "
+      "shifts of two effects, in degrees. 0: "
       "identical (dark); 90: nothing in common; below {:.0f}: alike</caption>\n<thead><tr><td></td>",
       kDistinguishable_deg);
   for (const std::string& name : angles.names)

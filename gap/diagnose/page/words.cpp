@@ -40,7 +40,8 @@ std::string to_html(const Table& table) {
     }
     return html + "</tr>\n";
   };
-  std::string html = "<div class=\"tables\"><table>\n" + cells(table.head, "th");
+  std::string html =
+      "<div class=\"tables\" role=\"group\" aria-label=\"Table\" tabindex=\"0\"><table>\n" + cells(table.head, "th");
   for (std::size_t r = 0; r < table.rows.size(); ++r)
     html += cells(table.rows[r], "td", r < table.row_links.size() ? std::string_view(table.row_links[r]) : "");
   return html + "</table></div>\n";
