@@ -32,7 +32,7 @@ RUN_AXE = '''axe.run(document, {rules: {'target-size': {enabled: true}}, resultT
     .filter(({element}) => !(id === 'target-size' && element.matches('#marks > .mark')))
     .map(({target}) => [`${id} (${help})`, target.join(' ')])))'''
 RUN_PAGE_CHECKS = '''['overlaps', 'pale', 'nameless', 'small'].flatMap((rule) => window[rule]().map((what) => [rule, what]))'''
-IS_DRAWN = 'new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(() => drawn(true))))'
+IS_DRAWN = 'new Promise((drawn) => setTimeout(() => requestAnimationFrame(() => drawn(true)), 500))'  # the 3D view takes turns
 
 
 @dataclasses.dataclass
