@@ -148,9 +148,10 @@ std::string moment_still(const Moment& moment, const RobotFaces& robot, const Wo
   for (const Face& face : world.ground) ground += outline_px(face, camera);
   if (!ground.empty()) svg += fmt::format("<path class=\"floor\" d=\"{}\"/>\n", ground);
   svg += faces_svg(world.solids, camera);
-  for (const MomentBody& body : moment.bodies)
-    if (const std::optional<RobotPose>& pose = body.poses[moment.now])
-      svg += fmt::format("<g class=\"{}\">\n{}</g>\n", body.kind, faces_svg(faces_at(robot, *pose), camera));
+  // the real robot last: without depth, one at the same place would colour it
+  for (auto body = moment.bodies.rbegin(); body != moment.bodies.rend(); ++body)
+    if (const std::optional<RobotPose>& pose = body->poses[moment.now])
+      svg += fmt::format("<g class=\"{}\">\n{}</g>\n", body->kind, faces_svg(faces_at(robot, *pose), camera));
   return svg + "</svg>\n";
 }
 

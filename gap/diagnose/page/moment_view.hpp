@@ -21,7 +21,7 @@ struct MomentView {
 };
 MomentView view_of_moment(const Moment& moment, const RobotFaces& robot);
 
-// One <svg> element of class "still", coloured by the page's style sheet: the real robot, the others translucent over
+// One <svg> element of class "still", coloured by the page's style sheet: the real robot, the others translucent under
 // it. `title`: its name.
 std::string moment_still(const Moment& moment, const RobotFaces& robot, const WorldFaces& world,
                          std::string_view title);
