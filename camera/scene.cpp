@@ -192,9 +192,9 @@ struct Scene::Implementation {
     for (const RobotSnapshot& robot : snapshot.robots) {
       PlacedRobot placed_robot{robot.id, robot.description, face_count, face_count};
       add_part(body_surface(*robot.description));
-      if (robot.description->has_flippers())
-        for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-          add_part(flipper_surface(*robot.description, static_cast<robot::Flipper>(i)));
+      for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+        if (const auto which = static_cast<robot::Flipper>(i); robot.description->has(which))
+          add_part(flipper_surface(*robot.description, which));
       placed_robot.end_face = face_count;
       robots.push_back(placed_robot);
     }
@@ -242,11 +242,9 @@ struct Scene::Implementation {
     for (const RobotSnapshot& robot : snapshot.robots) {
       const auto first = part;
       place(*part++, robot.X_WB);
-      if (robot.description->has_flippers()) {
-        for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-          place(*part++, compose(robot.X_WB, flipper_pose(*robot.description, static_cast<robot::Flipper>(i),
-                                                          robot.flipper_rad[i])));
-      }
+      for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+        if (const auto which = static_cast<robot::Flipper>(i); robot.description->has(which))
+          place(*part++, compose(robot.X_WB, flipper_pose(*robot.description, which, robot.flipper_rad[i])));
       for (auto own = first; own != part; ++own) own->track_m = robot.track_m;
     }
     commit(device.get(), moving.get());

@@ -146,10 +146,9 @@ TrackDriveDescription read_drive(TomlReader table) {
   return drive;
 }
 
-FlipperDescription read_flipper(TomlReader table) {
-  if (description::read_flipper_pairs(table) != description::FlipperPairs{})
-    table.fail("pairs", "is for the robot's bus alone: the simulator has robots with four flippers, or without");
-  FlipperDescription flipper{
+void read_flippers(TomlReader table, RobotDescription& robot) {
+  robot.flipper_pairs = description::read_flipper_pairs(table);
+  const FlipperDescription flipper{
       .mass_kg = table.number("mass_kg", kPositive),
       .length_m = table.number("length_m", kPositive),
       .pivot_radius_m = table.number("pivot_radius_m", kPositive),
@@ -171,7 +170,7 @@ FlipperDescription read_flipper(TomlReader table) {
   if (flipper.p_BPivot_m.x() <= 0 || flipper.p_BPivot_m.y() <= 0)
     table.fail("front_left_pivot_m", "must have x and y of more than 0: it is the front left one");
   table.finish();
-  return flipper;
+  robot.flipper.push_back(flipper);
 }
 
 FlipperServoDescription read_servo(TomlReader table) {
@@ -337,7 +336,12 @@ TrackDescription CasterDescription::as_wheel() const {
 }
 
 double RobotDescription::total_mass_kg() const {
-  return body.mass_kg + (has_flippers() ? static_cast<double>(robot::kFlipperCount) * flipper.front().mass_kg : 0.0);
+  return body.mass_kg + (has_flippers() ? static_cast<double>(flipper_count()) * flipper.front().mass_kg : 0.0);
+}
+
+std::size_t RobotDescription::flipper_count() const {
+  if (!has_flippers()) return 0;
+  return robot::kFlipperCount / 2 * (std::size_t{flipper_pairs.front} + std::size_t{flipper_pairs.rear});
 }
 
 double RobotDescription::track_gauge_m() const {
@@ -380,7 +384,7 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
   read_running_gear(file, robot);
   robot.drive = read_drive(file.table("drive"));
   if (file.has("flipper")) {
-    robot.flipper.push_back(read_flipper(file.table("flipper")));
+    read_flippers(file.table("flipper"), robot);
     robot.servo = read_servo(file.table("servo"));
   }
   robot.battery = read_battery(file.table("battery"));

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "formats/description/description_error.hpp"
+#include "formats/description/flipper_pairs.hpp"
 #include "physics/effects.hpp"
 #include "physics/pose.hpp"
 #include "robot/parts.hpp"
@@ -187,7 +188,8 @@ struct RobotDescription {
   std::vector<TrackDescription> track;    // of the left side: one track, or at least one wheel, the front one first
   std::vector<CasterDescription> caster;  // of robots with wheels
   TrackDriveDescription drive;
-  std::vector<FlipperDescription> flipper;  // empty, or one that stands for all four
+  std::vector<FlipperDescription> flipper;  // empty, or one that stands for all that the robot has
+  description::FlipperPairs flipper_pairs;  // which; of no meaning without flippers
   FlipperServoDescription servo{};
   BatteryDescription battery{};
   std::vector<SensorDescription> sensors;
@@ -196,6 +198,10 @@ struct RobotDescription {
   Effects effects;  // switched on by [effects.NAME] tables
 
   bool has_flippers() const { return !flipper.empty(); }
+  bool has(robot::Flipper which) const {
+    return has_flippers() && (robot::is_front(which) ? flipper_pairs.front : flipper_pairs.rear);
+  }
+  std::size_t flipper_count() const;  // 0, 2 or 4
   bool has_wheels() const { return track.front().straight_m() == 0; }
   double total_mass_kg() const;
   double track_gauge_m() const;     // between the centre planes of the tracks, or of the wheels in the mean

@@ -11,8 +11,8 @@ RobotDimensions dimensions_of(const RobotDescription& robot) {
     out.casters.push_back({2 * caster.radius_m, caster.radius_m, caster.width_m, caster.p_BC_m});
   out.ride_height_m = robot.ride_height_m();
   out.max_speed_mps = robot.drive.max_speed_mps;
-  out.has_flippers = robot.has_flippers();
-  if (!out.has_flippers) return out;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) out.has_flipper[i] = robot.has(static_cast<robot::Flipper>(i));
+  if (!out.has_flippers()) return out;
   const FlipperDescription& flipper = robot.flipper.front();
   out.flipper_length_m = flipper.length_m;
   out.pivot_radius_m = flipper.pivot_radius_m;

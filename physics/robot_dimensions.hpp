@@ -4,6 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <functional>
 #include <vector>
 
 #include "physics/robot_description.hpp"
@@ -22,7 +25,8 @@ struct RobotDimensions {
   std::vector<BeltDimensions> tracks;  // of the left side, the front one first; the right ones are mirror images
   std::vector<BeltDimensions> casters;
   double ride_height_m = 0;  // of B's origin on flat ground
-  bool has_flippers = false;
+  std::array<bool, robot::kFlipperCount> has_flipper{};
+  bool has_flippers() const { return std::ranges::any_of(has_flipper, std::identity{}); }
   double flipper_length_m = 0, pivot_radius_m = 0, tip_radius_m = 0, flipper_width_m = 0;
   Eigen::Vector3d p_BPivot_m{0, 0, 0};  // of the front left flipper; the others are mirror images
   double min_angle_rad = 0, max_angle_rad = 0;

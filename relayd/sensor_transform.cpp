@@ -155,17 +155,20 @@ bool SensorTransform::take_status(const MessageView& message) {
   frame_.paused = is_true(message, "Paused");
   frame_.not_at_start = message.find("Start").has_value();
 
-  std::array<double, robot::kFlipperCount> joint_rad;
-  bool all_flippers = true;
+  // A robot has the flippers of which its server tells the angle: all four, a pair, or none. Of a half pair none is
+  // taken.
+  std::array<double, robot::kFlipperCount> flipper_rad;
+  flipper_rad.fill(robot::kNoFlipper);
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    all_flippers &=
-        read(message, protocol::frames::usarsim_flipper_name(static_cast<robot::Flipper>(i)), {&joint_rad[i], 1});
+    const auto flipper = static_cast<robot::Flipper>(i);
+    double joint_rad = 0;
+    if (read(message, protocol::frames::usarsim_flipper_name(flipper), {&joint_rad, 1}))
+      flipper_rad[i] = protocol::frames::tip_up_from_usarsim_flipper(flipper, joint_rad);
   }
-  if (all_flippers) {
-    for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-      state.flipper_rad[i] =
-          protocol::frames::tip_up_from_usarsim_flipper(static_cast<robot::Flipper>(i), joint_rad[i]);
-    }
+  const auto is_told = [&](robot::Flipper flipper) { return !std::isnan(flipper_rad[flipper]); };
+  const bool front = is_told(robot::kFrontLeft), rear = is_told(robot::kRearLeft);
+  if (is_told(robot::kFrontRight) == front && is_told(robot::kRearRight) == rear && (front || rear)) {
+    state.flipper_rad = flipper_rad;
     note(robot::kHasFlippers);
   }
   finish_tracks();

@@ -149,11 +149,16 @@ void RunRecorder::put_reading(const physics::TachometerReading& reading) {
 }
 
 void RunRecorder::put_reading(const physics::DrivesReading& reading) {
+  // cells of flippers that the robot has not stay empty
+  const auto of = [this](const std::array<double, robot::kFlipperCount>& values, robot::Flipper which) {
+    return robot_.has(which) ? values[which] : std::numeric_limits<double>::quiet_NaN();
+  };
   const auto &a = reading.flipper_a, &angle = reading.flipper_rad;
   put(track_current_, {reading.track_a[robot::kLeft], reading.track_a[robot::kRight]});
-  put(flipper_current_, {a[robot::kFrontLeft], a[robot::kFrontRight], a[robot::kRearLeft], a[robot::kRearRight]});
-  put(flipper_,
-      {angle[robot::kFrontLeft], angle[robot::kFrontRight], angle[robot::kRearLeft], angle[robot::kRearRight]});
+  put(flipper_current_,
+      {of(a, robot::kFrontLeft), of(a, robot::kFrontRight), of(a, robot::kRearLeft), of(a, robot::kRearRight)});
+  put(flipper_, {of(angle, robot::kFrontLeft), of(angle, robot::kFrontRight), of(angle, robot::kRearLeft),
+                 of(angle, robot::kRearRight)});
   put(battery_, {reading.battery_v});
 }
 

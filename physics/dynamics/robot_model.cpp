@@ -51,8 +51,7 @@ double stalled_a(const RobotDescription& robot) {
   const Effects& effects = robot.effects;
   const double track = robot.drive.amperes_per_newton * robot.drive.max_force_n * effects.drive_torque_scale;
   const double flipper = robot.servo.amperes_per_nm * robot.servo.max_torque_nm * effects.flipper_torque_scale;
-  return static_cast<double>(robot::kTrackCount) * track +
-         (robot.has_flippers() ? static_cast<double>(robot::kFlipperCount) * flipper : 0);
+  return static_cast<double>(robot::kTrackCount) * track + static_cast<double>(robot.flipper_count()) * flipper;
 }
 
 }  // namespace
@@ -72,9 +71,8 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
     belt.slip_spm = description.effects.slip_with_speed_spm;
   }
   make_hull(id);
-  if (description.has_flippers())
-    for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight})
-      make_flipper(which, id);
+  for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight})
+    if (description.has(which)) make_flipper(which, id);
   enter_dynamics();
 }
 
@@ -302,6 +300,7 @@ void RobotModel::before_step(double time_step_s) {
   if (!description.has_flippers()) return;
   const FlipperServoDescription servo = servo_now();
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    if (!flippers_[i].joint) continue;
     if (prescribed_.flipper_rad[i])
       flippers_[i].joint->prescribe(*prescribed_.flipper_rad[i], time_step_s);
     else

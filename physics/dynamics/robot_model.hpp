@@ -1,4 +1,4 @@
-// One robot as Bullet bodies: hull with main tracks or wheels, four flippers on joints, and the belts' drives.
+// One robot as Bullet bodies: hull with main tracks or wheels, its flippers on joints, and the belts' drives.
 #pragma once
 
 #include <array>

@@ -36,6 +36,13 @@ std::size_t history_length(const RobotDescription& robot, double time_step_s) {
   return longest + 1;
 }
 
+// A drive that is not there measures nothing; its noise has been drawn, so that the others' does not depend on it.
+DrivesReading without_missing_flippers(DrivesReading reading, const RobotDescription& robot) {
+  for (std::size_t i = 0; i < robot::kFlipperCount && robot.has_flippers(); ++i)
+    if (!robot.has(static_cast<robot::Flipper>(i))) reading.flipper_a[i] = reading.flipper_rad[i] = 0;
+  return reading;
+}
+
 }  // namespace
 
 SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed,
@@ -129,7 +136,7 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
     case SensorType::touch:
       return TouchReading{(now.touched >> i & 1) != 0};
     case SensorType::drives:
-      return measure_drives(sensor, entry.state, now, robot_.servo);
+      return without_missing_flippers(measure_drives(sensor, entry.state, now, robot_.servo), robot_);
   }
   throw std::logic_error("unknown sensor type");
 }

@@ -64,8 +64,9 @@ std::span<const double> measured(const runs::Run& run, std::string_view column) 
 
 std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription& robot) {
   for (const std::string_view belt : {"track_left_mps", "track_right_mps"}) measured(run, belt);
-  if (robot.has_flippers())
-    for (const std::string_view which : robot::kFlipperNames) measured(run, fmt::format("flipper_{}_rad", which));
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    if (robot.has(static_cast<robot::Flipper>(i)))
+      measured(run, fmt::format("flipper_{}_rad", robot::kFlipperNames[i]));
 
   // True motion of belts and flippers, row by row; while the robot settles, belts stand, flippers at their first
   // angles.
@@ -78,8 +79,8 @@ std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription&
     const PrescribedMotion motion = rollout::actual_motion(reported, since_s, robot, late);
     DriveSample sample{kSettle_s + since_s};
     for (std::size_t i = 0; i < robot::kTrackCount; ++i) sample.belt_mps[i] = motion.track_mps[i].value();
-    if (robot.has_flippers())
-      for (std::size_t i = 0; i < robot::kFlipperCount; ++i) sample.flipper_rad[i] = motion.flipper_rad[i].value();
+    for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+      if (robot.has(static_cast<robot::Flipper>(i))) sample.flipper_rad[i] = motion.flipper_rad[i].value();
     if (samples.empty()) samples.push_back({0, {}, sample.flipper_rad});
     samples.push_back(sample);
   }

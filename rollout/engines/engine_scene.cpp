@@ -83,9 +83,13 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
   return scene;
 }
 
-double flipper_at_start(const EngineScene& scene, std::size_t flipper) {
+robot::Flipper flipper_of_arm(const RobotDescription& robot, std::size_t arm) {
+  return static_cast<robot::Flipper>(robot.has(robot::kFrontLeft) ? arm : robot::kRearLeft + arm);
+}
+
+double flipper_at_start(const EngineScene& scene, std::size_t arm) {
   return scene.prescribed.empty() ? scene.robot->flipper.front().start_angle_rad
-                                  : scene.prescribed.front().flipper_rad[flipper];
+                                  : scene.prescribed.front().flipper_rad[flipper_of_arm(*scene.robot, arm)];
 }
 
 double servo_torque_nm(const EngineScene& scene) {
@@ -108,6 +112,7 @@ RobotParts parts_of(const RobotDescription& robot) {
   const OutlineMoments m = moments(outline);
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
   for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight}) {
+    if (!robot.has(which)) continue;
     const bool front = robot::is_front(which);
     const robot::Track side = robot::side_of(which);
     const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
@@ -145,6 +150,7 @@ std::vector<Cuboid> straight_part(const Belted& shape, int boxes) {
 Drives::Drives(const EngineScene& scene)
     : command_(scene.command), prescribed_(scene.prescribed), time_step_s_(scene.time_step_s) {
   if (!scene.robot) return;
+  first_arm_ = flipper_of_arm(*scene.robot, 0);
   const TrackDriveDescription& drive = scene.robot->drive;
   if (drive.time_constant_s > 0) share_ = -std::expm1(-scene.time_step_s / drive.time_constant_s);
   max_mps_ = drive.max_speed_mps;
@@ -174,8 +180,8 @@ void Drives::advance() {
     belt_mps_[i] += share_ * (std::clamp(command_.track_speed_mps[i], -max_mps_, max_mps_) - belt_mps_[i]);
 }
 
-double Drives::flipper_radps(std::size_t flipper, double angle_rad) const {
-  const double apart_rad = robot::wrap_angle(command_.flipper[flipper].value - angle_rad);
+double Drives::flipper_radps(std::size_t arm, double angle_rad) const {
+  const double apart_rad = robot::wrap_angle(flipper_rad(arm) - angle_rad);
   return std::clamp(servo_gain_per_s_ * apart_rad, -max_radps_, max_radps_);
 }
 

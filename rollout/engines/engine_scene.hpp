@@ -64,14 +64,16 @@ struct Arm {
   physics::Pose X_BArm;                   // at angle 0; a positive angle turns about -y of it
 };
 
+// The flipper that the arm with this number is: of those that the robot has, in the order of robot::Flipper.
+robot::Flipper flipper_of_arm(const physics::RobotDescription& robot, std::size_t arm);
 // The angle of an arm before the first step.
-double flipper_at_start(const EngineScene& scene, std::size_t flipper);
+double flipper_at_start(const EngineScene& scene, std::size_t arm);
 // The largest torque of a servo; practically unlimited for prescribed angles.
 double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
   std::vector<Belted> tracks;  // tracks, or wheels and casters, in B
-  std::vector<Arm> arms;       // in the order of robot::Flipper
+  std::vector<Arm> arms;       // of the flippers that the robot has, in the order of robot::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
 
@@ -82,14 +84,15 @@ class Drives {
   explicit Drives(const EngineScene& scene);
   void advance();  // call before each step
   double belt_mps(robot::Track track) const { return belt_mps_[track]; }
-  // The commanded speed of a flipper at `angle_rad`; a prescribed one reaches its angle within the step.
-  double flipper_radps(std::size_t flipper, double angle_rad) const;
-  double flipper_rad(std::size_t flipper) const { return command_.flipper[flipper].value; }  // commanded
+  // The commanded speed of an arm at `angle_rad`; a prescribed one reaches its angle within the step.
+  double flipper_radps(std::size_t arm, double angle_rad) const;
+  double flipper_rad(std::size_t arm) const { return command_.flipper[first_arm_ + arm].value; }  // commanded
 
  private:
   void advance_as_prescribed();
 
   robot::Command command_;
+  std::size_t first_arm_ = 0;  // which flipper it is
   std::vector<DriveSample> prescribed_;
   std::size_t next_ = 0;  // index in prescribed_ of the first sample that is not past
   double time_step_s_ = 0, time_s_ = 0;

@@ -87,8 +87,10 @@ void write_dimensions(JsonWriter& out, const physics::RobotDimensions& size) {
   write_belts(out, "tracks", size.tracks);
   write_belts(out, "casters", size.casters);
   out.key("ride_height").number(size.ride_height_m);
-  if (size.has_flippers) {
-    out.key("flipper").open('{');
+  if (size.has_flippers()) {
+    out.key("flipper").open('{').key("has").open('[');
+    for (const bool has : size.has_flipper) out.comma().boolean(has);
+    out.close(']');
     out.key("length").number(size.flipper_length_m).key("width").number(size.flipper_width_m);
     out.key("pivot_radius").number(size.pivot_radius_m).key("tip_radius").number(size.tip_radius_m);
     out.key("at").vector(size.p_BPivot_m);

@@ -89,7 +89,7 @@ std::string_view mode_name(robot::JointMode mode) {
 
 void write_command(Writer& out, const RobotState& robot) {
   out.key("command").open('{').key("track").numbers(robot.command.track_speed_mps);
-  if (robot.dimensions.has_flippers) {
+  if (robot.dimensions.has_flippers()) {
     out.key("flipper").open('[');
     for (const robot::JointCommand& joint : robot.command.flipper) {
       out.comma().open('[').text(mode_name(joint.mode)).comma().number(joint.value).close(']');
@@ -104,7 +104,7 @@ void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge>
   out.key("p").vector(robot.X_WB.p).key("q").rotation(robot.X_WB.q).key("v").vector(robot.v_WB_mps);
   out.key("track_mps").numbers(robot.track_mps).key("track_m").numbers(robot.track_m);
   out.key("track_a").numbers(robot.track_a, 2);
-  if (robot.dimensions.has_flippers) {
+  if (robot.dimensions.has_flippers()) {
     out.key("flipper").numbers(robot.flipper_rad).key("flipper_a").numbers(robot.flipper_a, 2);
   }
   out.key("battery_v").number(robot.battery_v, 2).key("battery_s").number(robot.battery_left_s, 0);

@@ -34,17 +34,19 @@ std::optional<JointOrder> parse_joint_order(std::string_view text) {
   return found->second;
 }
 
-std::optional<robot::Flipper> find_flipper(std::string_view name) {
+std::optional<robot::Flipper> find_flipper(const physics::RobotDescription& robot, std::string_view name) {
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     const auto flipper = static_cast<robot::Flipper>(i);
-    if (protocol::usarsim::equal_ignoring_case(name, protocol::frames::usarsim_flipper_name(flipper))) return flipper;
+    if (robot.has(flipper) &&
+        protocol::usarsim::equal_ignoring_case(name, protocol::frames::usarsim_flipper_name(flipper)))
+      return flipper;
   }
   return std::nullopt;
 }
 
 robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
                                   robot::Flipper flipper, JointOrder order, double value) {
-  // flipper.front() describes all four flippers. The value is converted to positive tip up.
+  // flipper.front() describes all flippers. The value is converted to positive tip up.
   const physics::FlipperDescription& joint = description.flipper.front();
   const physics::FlipperServoDescription& servo = description.servo;
   const double tip_up = protocol::frames::tip_up_from_usarsim_flipper(flipper, value);

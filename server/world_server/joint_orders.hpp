@@ -27,8 +27,8 @@ std::optional<JointOrder> parse_joint_order(std::string_view text);
 inline constexpr std::array kUsarsimJoints = {robot::kFrontRight, robot::kFrontLeft, robot::kRearRight,
                                               robot::kRearLeft};
 
-// "FRFlipper" and so on, without case.
-std::optional<robot::Flipper> find_flipper(std::string_view name);
+// "FRFlipper" and so on, without case; nullopt: no flipper of this robot has that name.
+std::optional<robot::Flipper> find_flipper(const physics::RobotDescription& robot, std::string_view name);
 
 // Returns the joint command for `value` (USARSim's sign), limited to the robot's abilities; relative orders start from
 // `truth`.

@@ -40,8 +40,9 @@ robot::Command within_limits(const physics::RobotDescription& robot, robot::Comm
   for (double& speed : command.track_speed_mps) {
     speed = std::clamp(speed, -robot.drive.max_speed_mps, robot.drive.max_speed_mps);
   }
-  for (robot::JointCommand& joint : command.flipper) {
-    if (!robot.has_flippers()) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    robot::JointCommand& joint = command.flipper[i];
+    if (!robot.has(static_cast<robot::Flipper>(i))) {
       joint = {robot::JointMode::brake, 0};
     } else if (joint.mode == robot::JointMode::angle) {
       joint.value = std::clamp(joint.value, robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);

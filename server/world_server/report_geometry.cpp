@@ -208,6 +208,7 @@ bool write_flippers(MessageWriter& writer, const Session& session, const Request
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     const auto which = static_cast<robot::Flipper>(i);
     const char* name = protocol::frames::usarsim_flipper_name(which);
+    if (!robot.has(which)) continue;
     if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(name, request.name)) continue;
     if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
     found = true;

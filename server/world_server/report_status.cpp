@@ -13,6 +13,7 @@ void write_joints(protocol::usarsim::MessageWriter& writer, const SessionRobot& 
                   protocol::usarsim::NumberFormat format) {
   if (!robot.description->has_flippers()) return;
   for (const robot::Flipper flipper : kUsarsimJoints) {
+    if (!robot.description->has(flipper)) continue;
     writer.number(protocol::frames::usarsim_flipper_name(flipper),
                   protocol::frames::usarsim_flipper_from_tip_up(flipper, truth.flipper_rad[flipper]), format);
   }

@@ -86,7 +86,7 @@ struct JointSet {
 // A set with an unknown joint or order is skipped. A name alone is no mistake: drivers of ROS name the robot itself.
 void obey(Simulation& simulation, Session& session, const physics::RobotTruth& truth, const JointSet& set) {
   SessionRobot& robot = *session.robot;
-  const auto flipper = robot.description->has_flippers() ? find_flipper(set.name) : std::nullopt;
+  const auto flipper = find_flipper(*robot.description, set.name);
   if (flipper && set.order) {
     robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *set.order, set.value);
   } else if (set.is_given) {
@@ -167,7 +167,7 @@ void multi_drive(Simulation& simulation, Session& session, const MessageView& me
   if (robot.description->has_flippers()) {
     const physics::RobotTruth truth = simulation.world.truth(robot.id);
     for (const protocol::usarsim::Group& group : message.all()) {
-      const auto flipper = find_flipper(group.key);
+      const auto flipper = find_flipper(*robot.description, group.key);
       const auto angle_rad = protocol::usarsim::parse_number(group.value);
       if (!flipper || !angle_rad) continue;
       robot.command.flipper[*flipper] =

@@ -27,11 +27,12 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
   if (is_any_of(name, {"AllJoints", "AllAngles"})) {
     // one value for all, or one for each
     for (std::size_t i = 0; i < kUsarsimJoints.size(); ++i) {
+      if (!robot.description->has(kUsarsimJoints[i])) continue;
       if (count == 1 || i < count.value_or(0) || *order == JointOrder::brake) {
         command(kUsarsimJoints[i], count == 1 ? params[0] : params[i]);
       }
     }
-  } else if (const auto flipper = find_flipper(name)) {
+  } else if (const auto flipper = find_flipper(*robot.description, name)) {
     command(*flipper, params[0]);
   } else {
     return "no joint of that name";

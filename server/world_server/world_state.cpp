@@ -110,7 +110,10 @@ void read_robot(const Simulation& simulation, const Session& session, const Stat
   state.track_mps = truth.track_mps;
   state.track_m = truth.track_m;
   state.track_a = currents.track_a;
-  state.flipper_rad = truth.flipper_rad;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const bool has = robot.description->has(static_cast<robot::Flipper>(i));
+    state.flipper_rad[i] = has ? truth.flipper_rad[i] : std::numeric_limits<double>::quiet_NaN();
+  }
   state.flipper_a = currents.flipper_a;
   state.battery_v = truth.battery_v;
   state.battery_left_s = truth.battery_left_s;

@@ -50,7 +50,7 @@ struct RobotState {
   physics::Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0};
   std::array<double, robot::kTrackCount> track_mps{}, track_m{}, track_a{};
-  std::array<double, robot::kFlipperCount> flipper_rad{}, flipper_a{};
+  std::array<double, robot::kFlipperCount> flipper_rad{}, flipper_a{};  // NaN and 0 where the robot has no flipper
   double battery_v = 0, battery_left_s = 0;
   robot::Command command;          // in force
   bool has_client = false;         // false: an operator placed it

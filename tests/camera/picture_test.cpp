@@ -137,6 +137,27 @@ TEST_CASE("Looking ahead the front camera sees nothing of its robot, tilted down
   CHECK(rgb[0] > 2 * rgb[2]);
 }
 
+TEST_CASE("Only the flippers that a robot has are in a picture") {
+  const auto world = level_ground();
+  const auto shown = [&](const RobotSnapshot& robot) {
+    WorldSnapshot snapshot;
+    snapshot.robots.push_back(robot);
+    return picture_of(world, snapshot, birds_eye_view(robot)).rgb;
+  };
+  RobotSnapshot robot = kenaf_at(pose(0, 0, 0.09));
+  RobotSnapshot turned = robot;
+  turned.flipper_rad[robot::kRearLeft] = turned.flipper_rad[robot::kRearRight] = 0;
+  CHECK(shown(robot) != shown(turned));
+
+  // where there is no rear pair, no angle of it shows
+  auto front = std::make_shared<physics::RobotDescription>(*robot.description);
+  front->flipper_pairs = {.front = true, .rear = false};
+  robot.description = turned.description = front;
+  CHECK(shown(robot) == shown(turned));
+  turned.flipper_rad[robot::kFrontLeft] = 0;
+  CHECK(shown(robot) != shown(turned));
+}
+
 TEST_CASE("The picture is that of a ray through each pixel, but for a few") {
   const auto [name, limit] =
       GENERATE(table<const char*, double>({{"step-200", 0.0005}, {"step-field", 0.001}, {"hills", 0.002}}));

@@ -111,3 +111,54 @@ TEST_CASE("A driven flipper belt carries the robot on its flippers") {
     CHECK(world.truth(id).X_WB.p.x() - before == Approx(driven ? 0.195 : 0).margin(0.01));
   }
 }
+
+TEST_CASE("A robot with one pair of flippers has their mass alone, and takes commands to the others without effect") {
+  const RobotDescription four = load_robot("kenaf");
+  for (const bool front : {true, false}) {
+    CAPTURE(front);
+    const RobotDescription robot = kenaf_with_pair(front);
+    CHECK(robot.flipper_count() == 2);
+    CHECK(robot.has(robot::kFrontRight) == front);
+    CHECK(robot.has(robot::kRearLeft) == !front);
+    CHECK(robot.total_mass_kg() == Approx(four.total_mass_kg() - 2 * four.flipper.front().mass_kg));
+
+    World world(ground(), {}, 1);
+    const RobotId id = world.add_robot(robot, "a", {});
+    world.set_command(id, drive(0, 0, 1.6, 1.6));
+    run(world, 2);
+    const RobotTruth truth = world.truth(id);
+    for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight})
+      CHECK(truth.flipper_rad[which] == Approx(robot.has(which) ? 1.6 : 0.0).margin(1e-3));
+    CHECK(truth.flipper_nm[front ? robot::kRearLeft : robot::kFrontLeft] == 0);
+  }
+}
+
+TEST_CASE("One pair of flippers raises its own end of the robot") {
+  for (const bool front : {true, false}) {
+    World world(ground(), {}, 1);
+    const RobotId id = world.add_robot(kenaf_with_pair(front), "a", {});
+    world.set_command(id, drive(0, 0, -1.0, -1.0));
+    run(world, 3);
+    const double nose_down_rad = roll_pitch_yaw(world.truth(id).X_WB.q).y();
+    CHECK((front ? -nose_down_rad : nose_down_rad) > 0.15);
+  }
+}
+
+TEST_CASE("The drives' sensor reads nothing of flippers that are not there") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(kenaf_with_pair(true), "a", {});
+  world.set_command(id, drive(0.1, 0.1));
+  run(world, 0.5);
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  bool any = false;
+  for (const SensorSample& sample : samples) {
+    const auto* drives = std::get_if<DrivesReading>(&sample.reading);
+    if (drives == nullptr) continue;
+    any = true;
+    CHECK(drives->flipper_rad[robot::kFrontLeft] == Approx(1).margin(0.05));
+    CHECK(drives->flipper_rad[robot::kRearLeft] == 0);
+    CHECK(drives->flipper_a[robot::kRearRight] == 0);
+  }
+  CHECK(any);
+}

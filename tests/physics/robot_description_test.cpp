@@ -95,8 +95,9 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("start_angle_rad = 1.0", "start_angle_rad = 4.0").find("between min_angle_rad") !=
         std::string::npos);
   CHECK(error_with("belt_driven = true", "belt_driven = true\npairs = \"both\"").empty());
-  CHECK(error_with("belt_driven = true", "belt_driven = true\npairs = \"front\"")
-            .find("flipper.pairs is for the robot's") != std::string::npos);
+  CHECK(error_with("belt_driven = true", "belt_driven = true\npairs = \"front\"").empty());
+  CHECK(error_with("belt_driven = true", "belt_driven = true\npairs = \"left\"")
+            .find("flipper.pairs is \"left\", but must be") != std::string::npos);
   CHECK_THROWS_AS(load_robot("no-such-robot"), kenaf::description::DescriptionError);
   CHECK_THROWS_AS(load_robot("./no-such-file.toml"), kenaf::description::DescriptionError);
 }

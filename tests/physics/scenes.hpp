@@ -46,6 +46,13 @@ inline RobotDescription plain_tracks(double friction) {
   return robot;
 }
 
+// Kenaf with its front pair of flippers alone, or its rear one.
+inline RobotDescription kenaf_with_pair(bool front) {
+  RobotDescription robot = load_robot("kenaf");
+  robot.flipper_pairs = {.front = front, .rear = !front};
+  return robot;
+}
+
 inline void run(World& world, double time_s) {
   const auto steps = std::lround(time_s / world.settings().time_step_s);
   for (long i = 0; i < steps; ++i) world.step();

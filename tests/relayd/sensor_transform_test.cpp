@@ -4,6 +4,7 @@
 #include "robot/state.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <initializer_list>
 #include <numbers>
 
@@ -106,6 +107,20 @@ TEST_CASE("Flippers: as STA reports them, tip up positive for all four") {
   SensorTransform three;
   take(three, "STA {Time 1} {FRFlipper -0.2} {FLFlipper -0.1} {RRFlipper 0.4}");
   CHECK(three.frame().state.fields == 0);
+}
+
+TEST_CASE("A robot with one pair of flippers has these, and none elsewhere") {
+  SensorTransform front, rear;
+  take(front, "STA {Time 1} {FRFlipper -0.2} {FLFlipper -0.1}");
+  CHECK(front.frame().state.fields == robot::kHasFlippers);
+  CHECK(front.frame().state.flipper_rad[robot::kFrontLeft] == 0.1);
+  CHECK(front.frame().state.flipper_rad[robot::kFrontRight] == 0.2);
+  CHECK(std::isnan(front.frame().state.flipper_rad[robot::kRearLeft]));
+  CHECK(std::isnan(front.frame().state.flipper_rad[robot::kRearRight]));
+  take(rear, "STA {Time 1} {RRFlipper 0.4} {RLFlipper 0.3}");
+  CHECK(rear.frame().state.fields == robot::kHasFlippers);
+  CHECK(std::isnan(rear.frame().state.flipper_rad[robot::kFrontLeft]));
+  CHECK(rear.frame().state.flipper_rad[robot::kRearLeft] == 0.3);
 }
 
 TEST_CASE("Currents and battery are those that the drives report") {

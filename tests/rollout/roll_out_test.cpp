@@ -207,3 +207,13 @@ TEST_CASE("A time step that does not divide the sample period is refused in word
   options.physics.time_step_s = 0.002;
   CHECK(roll_out(physics::load_robot("kenaf"), flat(), straight(0.2, 0.1), options).run.row_count() == 11);
 }
+
+TEST_CASE("A robot with one pair of flippers is recorded with empty cells where it has none") {
+  physics::RobotDescription robot = physics::load_robot("kenaf");
+  robot.flipper_pairs = {.front = true, .rear = false};
+  const RollOut out = roll_out(robot, flat(), straight(0.2, 1), exact());
+  CHECK(out.succeeded);
+  CHECK(out.run.column("flipper_fr_rad").back() == Approx(robot.flipper.front().start_angle_rad).margin(0.01));
+  CHECK(std::ranges::all_of(out.run.column("flipper_rl_rad"), [](double cell) { return std::isnan(cell); }));
+  CHECK(std::ranges::all_of(out.run.column("flipper_rr_a"), [](double cell) { return std::isnan(cell); }));
+}

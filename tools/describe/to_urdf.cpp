@@ -168,6 +168,7 @@ class UrdfMaker {
     const FlipperDescription& f = robot_.flipper.front();
     for (const bool front : {true, false})
       for (const bool left : {true, false}) {
+        if (!robot_.has(front ? robot::kFrontLeft : robot::kRearLeft)) continue;
         const double ahead = front ? 1 : -1;
         const std::string name = fmt::format("{}_{}_flipper", front ? "front" : "rear", left ? "left" : "right");
         const double height_m = 2 * std::min(f.pivot_radius_m, f.tip_radius_m);

@@ -56,6 +56,7 @@ std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture
   const physics::FlipperDescription& flipper = robot.flipper.front();
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     const auto which = static_cast<robot::Flipper>(i);
+    if (!robot.has(which)) continue;
     const double front = robot::is_front(which) ? 1 : -1;
     const double left = robot::side_of(which) == robot::kLeft ? 1 : -1;
     const Vector3d pivot_B = mirrored(flipper.p_BPivot_m, front, left);

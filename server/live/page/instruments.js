@@ -13,7 +13,7 @@ const ROWS = [   // label, text of a robot's state, wide, its signal (signals.js
   ["Flippers", (now) => (now.flipper_a ? fixed(now.flipper_a.reduce((a, b) => a + b), 1) + " A" : "none"), false, "flippers"],
   ["Battery", (now) => `${fixed(now.battery_v, 1)} V, ${Math.floor(now.battery_s / 60)} min left`, true, "battery"],
   ["Place", (now) => now.p.map((v) => fixed(v, 2)).join(", ") + " m", true, "place"],
-  ["Angles", (now) => (now.flipper ? now.flipper.map((v) => fixed(v * 180 / Math.PI, 0)).join("\u00b0, ") + "\u00b0" : "none"), true, "angles"],
+  ["Angles", (now) => (now.flipper ? now.flipper.filter((v) => v !== null).map((v) => fixed(v * 180 / Math.PI, 0)).join("\u00b0, ") + "\u00b0" : "none"), true, "angles"],
   ["Program", clientText, true],
 ];
 

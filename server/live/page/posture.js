@@ -33,7 +33,7 @@ export function createPosture() {
         add(rear, "rect", { class: "track", x: (y - width / 2) * scale, y: (-at[2] - radius) * scale, width: width * scale, height: 2 * radius * scale, rx: 2 });
       }
     }
-    const arms = about.flipper ? [0, 2].map((i) => add(front, "line", { class: "arm", "stroke-width": 1.5 * about.flipper.tip_radius * scale, "data-arm": i })) : [];
+    const arms = about.flipper ? [0, 2].filter((i) => about.flipper.has[i]).map((i) => add(front, "line", { class: "arm", "stroke-width": 1.5 * about.flipper.tip_radius * scale, "data-arm": i })) : [];
     const labels = [side, back].map((svg) => add(svg, "text", { x: -58, y: 42 }));
     parts = { front, rear, arms, labels, scale };
   }
@@ -51,8 +51,9 @@ export function createPosture() {
       parts.rear.setAttribute("transform", `rotate(${roll})`);
       parts.labels[0].textContent = `pitch ${fixed(pitch, 1)}\u00b0`;
       parts.labels[1].textContent = `roll ${fixed(roll, 1)}\u00b0`;
-      parts.arms.forEach((arm, i) => {
-        const { length, at } = about.flipper, angle = now.flipper[2 * i], outward = i === 0 ? -1 : 1;
+      parts.arms.forEach((arm) => {
+        const i = Number(arm.dataset.arm);
+        const { length, at } = about.flipper, angle = now.flipper[i], outward = i === 0 ? -1 : 1;
         const x = outward * at[0] * parts.scale, y = -at[2] * parts.scale;
         arm.setAttribute("x1", x);
         arm.setAttribute("y1", y);

@@ -1,4 +1,4 @@
-// A robot as three.js objects: hull, two tracks or its wheels, four flippers; belts run and flippers turn. In the colours that the
+// A robot as three.js objects: hull, two tracks or its wheels, its flippers; belts run and flippers turn. In the colours that the
 // cameras' pictures have (camera/shading.cpp); only its deck says whose it is, or how it is.
 //
 // Frame of the server: x forward, y left, z up.
@@ -103,14 +103,15 @@ export function makeRobot(about) {
     return texture;
   });
   for (const caster of about.casters) addBelt(caster, caster.at[1], beltTexture());
-  const arms = !flipper ? [] : [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([ahead, side]) => {
+  const places = [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([ahead, side], i) => ({ ahead, side, i }));
+  const arms = !flipper ? [] : places.filter(({ i }) => flipper.has[i]).map(({ ahead, side, i }) => {
     const mount = new THREE.Group(), arm = new THREE.Group(), texture = beltTexture();
     arm.add(makeBelt(beltOutline(flipper.length, flipper.pivot_radius, flipper.tip_radius), flipper.width, texture, ahead > 0 ? frontMaterial : rearMaterial));
     mount.position.set(ahead * flipper.at[0], side * flipper.at[1], flipper.at[2]);
     if (ahead < 0) mount.rotation.z = Math.PI;
     mount.add(arm);
     root.add(mount);
-    return { arm, texture, track: side > 0 ? 0 : 1, ahead };
+    return { arm, texture, track: side > 0 ? 0 : 1, ahead, i };
   });
   castShadows(root);
 
@@ -123,7 +124,7 @@ export function makeRobot(about) {
       deckMaterial.color.set(deck);
       // going forward the lower run stands still on the ground, and the outline goes forward there
       tracks.forEach((texture, side) => { texture.offset.x = (now.track_m[side] / STRIPE_M) % 1; });
-      arms.forEach(({ arm, texture, track: side, ahead }, i) => {
+      arms.forEach(({ arm, texture, track: side, ahead, i }) => {
         arm.rotation.y = -now.flipper[i];
         texture.offset.x = (ahead * now.track_m[side] / STRIPE_M) % 1;
       });

@@ -19,7 +19,7 @@ export const SIGNALS = {
   flippers: { name: "Flippers", unit: "A", least: 5, zero: true, lines: four((now) => now.flipper_a) },
   battery: { name: "Battery", unit: "V", least: 1, lines: [["voltage", (now) => now.battery_v]] },
   place: { name: "Place", unit: "m", least: 1, lines: [["x", (now) => now.p[0]], ["y", (now) => now.p[1]], ["z", (now) => now.p[2]]] },
-  angles: { name: "Flippers", unit: "\u00b0", least: 10, zero: true, lines: four((now) => now.flipper?.map((rad) => rad * DEG)) },
+  angles: { name: "Flippers", unit: "\u00b0", least: 10, zero: true, lines: four((now) => now.flipper?.map((rad) => (rad === null ? null : rad * DEG))) },
 };
 export const USUAL = ["speed", "pitch", "currents"];
 

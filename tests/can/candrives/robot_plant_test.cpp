@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "formats/description/description_file.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
+
 using namespace kenaf;
 using namespace kenaf::candrives;
 using namespace std::chrono_literals;
@@ -51,6 +54,22 @@ TEST_CASE("Tracks, flippers, currents and yaw rate have the robot's signs", "[ro
     CHECK(plant.state().flipper_rad[0] == Approx(-0.9).margin(0.02));
     CHECK(plant.state().flipper_rad[2] == Approx(1.0).margin(0.02));
   }
+}
+
+TEST_CASE("A robot with its rear flippers alone is behind its drives, too", "[robot plant]") {
+  const test::TemporaryFolder folder;
+  const std::string table = "\n[flipper]\n";
+  std::string text = description::read_description_file("robot", "kenaf", ".toml").text;
+  text.replace(text.find(table), table.size(), table + "pairs = \"rear\"\n");
+  test::write_file(folder / "rear.toml", text);
+
+  RobotPlant plant((folder / "rear.toml").string(), "flat", 0.05);
+  PlantCommand command = at_rest(plant);
+  command.flipper_rad.fill(-0.9);
+  run(plant, command, 2000);
+  CHECK(plant.state().pitch_rad > 0.03);  // the tail is up
+  CHECK(plant.state().flipper_rad[2] == Approx(-0.9).margin(0.02));
+  CHECK(plant.state().flipper_rad[0] == 0);
 }
 
 TEST_CASE("A flipper that is sent beyond its stop stands at it, within the reach of its limit switch",

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR ROBOT GAUGE_MM TIME_STEP_S
+# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR ROBOT GAUGE_MM TIME_STEP_S [PAIR]
 #
+# PAIR: front or rear: the robot has these flippers alone.
 # TIME_STEP_S: of the physics behind the drives; an emulated machine may be too slow for the default, 0.001.
 #
 # The square example over libkenaf_sim, relay and world server; and over libkenaf_real, SocketCAN and kenaf-candrives, whose
@@ -13,11 +14,21 @@ here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 . "$here/waiting.sh"
 with_vcan=$1 bin=$2
 export KENAF_ROBOT=$3 KENAF_TRACK_GAUGE_MM=$4 TIME_STEP_S=$5
+class=USARBot.$KENAF_ROBOT
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "square_test: $*" >&2; exit 1; }
 
-"$bin/kenaf-relayd" --embedded --robot "$KENAF_ROBOT" --class "USARBot.$KENAF_ROBOT" --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
+# What the machine reads and writes.
+mkdir "$work/bus"
+if [ $# -gt 5 ]; then
+  other=$([ "$6" = front ] && echo rear || echo front)
+  sed "s/^\[flipper\]\$/&\npairs = \"$6\"/; /^${other}_\(left\|right\) = /d" "$here/../../../share/robots/$3.toml" >"$work/bus/$6.toml"
+  [ "$(grep -cE '^(pairs|(front|rear)_(left|right)) = ' "$work/bus/$6.toml")" = 3 ] || fail "no robot with a $6 pair"
+  KENAF_ROBOT=$work/bus/$6.toml
+fi
+
+"$bin/kenaf-relayd" --embedded --robot "$KENAF_ROBOT" --class "$class" --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
 wait_until 20 [ -s "$work/port" ]
 KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
 
@@ -36,7 +47,7 @@ kill "$listener"; wait "$listener"
 cp bus.log drives.log real.csv "$results"
 exit "$status"
 END
-mkdir "$work/bus" && cd "$work/bus" || exit 1
+cd "$work/bus" || exit 1
 "$with_vcan" --timeout 800 --writable . bash "$work/on_bus.sh" "$here" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
 cat drives.log
 

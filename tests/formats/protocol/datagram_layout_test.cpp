@@ -99,6 +99,27 @@ TEST_CASE("State is 284 bytes") {
                          kHalf + kOne + kMinusOne);
 }
 
+TEST_CASE("A flipper that the robot has not is an event bit, and comes back as none") {
+  State state{};
+  state.session = kSessionValue;
+  state.robot.fields = kenaf::robot::kHasFlippers;
+  state.robot.flipper_rad = {1, 2, kenaf::robot::kNoFlipper, kenaf::robot::kNoFlipper};
+  const std::vector<std::byte> bytes = encoded(state);
+  CHECK(bytes[32] == std::byte{0xc0});                                      // bits 6 and 7 of the events
+  for (std::size_t i = 180; i < 196; ++i) CHECK(bytes[i] == std::byte{0});  // angles of flippers 2 and 3
+  Datagram read = Bye{9};
+  REQUIRE(decode(bytes, read) == DecodeError::none);
+  const auto& angles = std::get<State>(read).robot.flipper_rad;
+  CHECK(angles[0] == 1);
+  CHECK(angles[1] == 2);
+  CHECK(std::isnan(angles[2]));
+  CHECK(std::isnan(angles[3]));
+
+  // without any flipper there is none to miss
+  state.robot.fields = 0;
+  CHECK(encoded(state)[32] == std::byte{0});
+}
+
 TEST_CASE("Bye is the header alone, Ping and Pong carry their number") {
   check_bytes(Bye{kSessionValue}, "4b 4e 41 46 01 06 10 00 " + kSession);
   check_bytes(Ping{kSessionValue, 5}, "4b 4e 41 46 01 07 14 00 " + kSession + "05 00 00 00");

@@ -144,6 +144,11 @@ TEST_CASE("A state says how everything is, in numbers that JSON knows") {
   message = json::parse(state_message(state, 1, 0, 0));
   CHECK(message["robots"][0]["p"][0].is_null());
   CHECK(json::parse(inventory_message(state))["robots"][0]["name"] == "</script>\"");
+
+  state.robots[0].flipper_rad[2] = std::numeric_limits<double>::quiet_NaN();
+  state.robots[0].dimensions.has_flipper[2] = false;
+  CHECK(json::parse(state_message(state, 1, 0, 0))["robots"][0]["flipper"][2].is_null());
+  CHECK(json::parse(inventory_message(state))["robots"][0]["flipper"]["has"] == json::array({true, true, false, true}));
 }
 
 TEST_CASE("Contacts and sensors are in a state only if they are shown, the latter of one robot") {
@@ -198,6 +203,7 @@ TEST_CASE("An inventory says what everything is, and is new when somebody comes 
   CHECK(robot["class"] == "USARBot.Kenaf");
   CHECK(robot["tracks"][0]["length"] == 0.58);
   CHECK(robot["flipper"]["at"] == json::array({0.225, 0.17, -0.025}));
+  CHECK(robot["flipper"]["has"] == json::array({true, true, true, true}));
   CHECK(robot["max_speed"] == 0.5);
   one.robots[0].robot = kenaf::physics::RobotId{31};
   CHECK(json::parse(inventory_message(one))["robots"][0]["view"] == "#31");
