@@ -198,8 +198,7 @@ void check_collada(std::string_view bytes) {
     return;
   }
   if (check.refusal)
-    throw description::DescriptionError(
-        fmt::format("{} (line {})", check.refusal, line_of(parser.get())));
+    throw description::DescriptionError(fmt::format("{} (line {})", check.refusal, line_of(parser.get())));
   throw description::DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
                                                   XML_ErrorString(XML_GetErrorCode(parser.get())),
                                                   line_of(parser.get())));
