@@ -2,7 +2,7 @@
 // WebGL the still picture stays.
 //
 // `data-robot` of #moment-figures: {fixed, flipper: faces [material, x, y, z, ...] in mm, counterclockwise from outside,
-// pivot: of the front left flipper in mm}. `data-moment` of a figure: {from, step: s; now: index of the moment;
+// has: which of the four flippers it has; pivot: of the front left one in mm}. `data-moment` of a figure: {from, step: s; now: index of the moment;
 // view: {centre in m, azimuth, elevation in rad, half: width from the middle to the edge in m}; bodies: [{kind, poses:
 // [x, y, z in 0.1 mm, roll, pitch, yaw and flippers fl, fr, rl, rr in 0.1 mrad] or null}]; solids, ground: faces [x, y,
 // z, ...] in mm}. All relative to where the real robot is at the moment.
@@ -31,7 +31,8 @@
   function facesAt(pose) {
     const columns = rotation(pose.slice(3, 6)), place = (v) => turned(columns, v).map((x, i) => x + pose[i]);
     const faces = parts.fixed.map(({ material, corners }) => ({ material, corners: corners.map(place) }));
-    for (let i = 0; i < 4 && parts.flipper.length; ++i) {
+    for (let i = 0; i < 4; ++i) {
+      if (!robot.has[i]) continue;
       const ahead = i < 2 ? 1 : -1, left = i % 2 ? -1 : 1, c = Math.cos(pose[6 + i]), s = Math.sin(pose[6 + i]);
       const inBody = ([x, y, z]) => [ahead * (parts.pivot[0] + c * x - s * z), left * parts.pivot[1] + ahead * y, parts.pivot[2] + s * x + c * z];
       for (const { material, corners } of parts.flipper) faces.push({ material, corners: corners.map((v) => place(inBody(v))) });

@@ -159,6 +159,7 @@ std::string robot_data(const RobotFaces& robot) {
   const Vector3d& pivot = robot.p_BPivot_m;
   return json{{"fixed", robot_faces_json(robot.fixed)},
               {"flipper", robot_faces_json(robot.flipper)},
+              {"has", robot.has_flipper},
               {"pivot", {std::lround(1000 * pivot.x()), std::lround(1000 * pivot.y()), std::lround(1000 * pivot.z())}}}
       .dump();
 }

@@ -97,7 +97,8 @@ RobotFaces faces_of(const physics::RobotDimensions& size) {
     for (const double side : {1.0, -1.0}) add_belt(track, side);
   for (const physics::BeltDimensions& caster : size.casters) add_belt(caster, 1);
 
-  if (size.has_flippers)
+  robot.has_flipper = size.has_flipper;
+  if (size.has_flippers())
     robot.flipper = belt_faces(size.flipper_length_m, size.pivot_radius_m, size.tip_radius_m, size.flipper_width_m,
                                Vector3d::Zero(), Material::flipper);
   robot.p_BPivot_m = size.p_BPivot_m;
@@ -107,7 +108,8 @@ RobotFaces faces_of(const physics::RobotDimensions& size) {
 std::vector<Face> faces_in_pose(const RobotFaces& robot, const Vector3d& p_WB_m, const Vector3d& angles_rad,
                                 const std::array<double, 4>& flippers_rad) {
   std::vector<Face> in_body = robot.fixed;
-  for (std::size_t i = 0; i < flippers_rad.size() && !robot.flipper.empty(); ++i) {
+  for (std::size_t i = 0; i < flippers_rad.size(); ++i) {
+    if (!robot.has_flipper[i]) continue;
     const double ahead = i < 2 ? 1 : -1, left = i % 2 == 0 ? 1 : -1;
     const Vector3d pivot(ahead * robot.p_BPivot_m.x(), left * robot.p_BPivot_m.y(), robot.p_BPivot_m.z());
     const Eigen::Quaterniond raised(Eigen::AngleAxisd(ahead < 0 ? std::numbers::pi : 0, Vector3d::UnitZ()) *

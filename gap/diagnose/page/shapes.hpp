@@ -23,7 +23,8 @@ struct Face {
 
 struct RobotFaces {
   std::vector<Face> fixed;              // in the body frame B
-  std::vector<Face> flipper;            // in its own frame: x along the arm from the pivot, z up; empty: none
+  std::vector<Face> flipper;            // in its own frame: x along the arm from the pivot, z up
+  std::array<bool, 4> has_flipper{};    // front left, front right, rear left, rear right
   Eigen::Vector3d p_BPivot_m{0, 0, 0};  // of the front left one; the others are mirror images, the rear arms point back
 };
 RobotFaces faces_of(const physics::RobotDimensions& size);
