@@ -15,7 +15,7 @@ Exit status: 0 no finding; 1 findings; 2 wrong use, or a page could not be looke
 import argparse, collections, contextlib, dataclasses, fnmatch, pathlib, shutil, subprocess, sys, typing
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / 'pages'))
-from browser import Browser
+from browser import Browser, end_on_request
 from served import ROOT, environment, live_view, playback
 
 OUT = ROOT / 'build/pages'
@@ -202,6 +202,7 @@ def main():
         print('\n'.join(page.name for page in pages))
         return 0
 
+    end_on_request()
     OUT.mkdir(parents=True, exist_ok=True)
     count = 0
     try:

@@ -2,13 +2,18 @@
 
 Every wait ends: with an error after PATIENCE_S. One thread.
 """
-import base64, json, os, pathlib, selectors, shutil, signal, subprocess, tempfile, time
+import base64, json, os, pathlib, selectors, shutil, signal, subprocess, sys, tempfile, time
 
 PATIENCE_S = 300  # for hangs alone: software draws the pages, perhaps on a busy machine
 
 # A sandbox needs rights that a container lacks; the pages are our own. Software draws: there is no GPU to rely on.
 SWITCHES = '''--headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --disable-dev-shm-usage --hide-scrollbars
     --no-first-run --disable-background-networking --disable-component-update --remote-debugging-pipe'''.split()
+
+
+def end_on_request():
+    """From now on a script that is told to end (SIGTERM) leaves no browser and no server behind."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
 class Browser:

@@ -7,7 +7,7 @@
 """
 import pathlib, re, sys
 
-from browser import Browser
+from browser import Browser, end_on_request
 from served import environment, live_view, playback
 from terminal import Terminal
 
@@ -73,6 +73,7 @@ def main():
     if len(sys.argv) < 4 or sys.argv[1] not in pictures or len(sys.argv) != {'live-view': 4, 'playback': 6, 'console': 5}[sys.argv[1]]:
         print(__doc__, file=sys.stderr)
         return 2
+    end_on_request()
     pictures[sys.argv[1]](pathlib.Path(sys.argv[2]).resolve(), *sys.argv[3:])
     return 0
 
