@@ -139,23 +139,23 @@ TEST_CASE("Looking ahead the front camera sees nothing of its robot, tilted down
 
 TEST_CASE("Only the flippers that a robot has are in a picture") {
   const auto world = level_ground();
-  const auto shown = [&](const RobotSnapshot& robot) {
+  const auto shown = [&](const RobotSnapshot& placed) {
     WorldSnapshot snapshot;
-    snapshot.robots.push_back(robot);
-    return picture_of(world, snapshot, birds_eye_view(robot)).rgb;
+    snapshot.robots.push_back(placed);
+    return picture_of(world, snapshot, birds_eye_view(placed)).rgb;
   };
-  RobotSnapshot robot = kenaf_at(pose(0, 0, 0.09));
-  RobotSnapshot turned = robot;
-  turned.flipper_rad[robot::kRearLeft] = turned.flipper_rad[robot::kRearRight] = 0;
-  CHECK(shown(robot) != shown(turned));
+  RobotSnapshot placed = kenaf_at(pose(0, 0, 0.09));
+  RobotSnapshot turned = placed;
+  turned.flipper_rad[kenaf::robot::kRearLeft] = turned.flipper_rad[kenaf::robot::kRearRight] = 0;
+  CHECK(shown(placed) != shown(turned));
 
   // where there is no rear pair, no angle of it shows
-  auto front = std::make_shared<physics::RobotDescription>(*robot.description);
+  auto front = std::make_shared<physics::RobotDescription>(*placed.description);
   front->flipper_pairs = {.front = true, .rear = false};
-  robot.description = turned.description = front;
-  CHECK(shown(robot) == shown(turned));
-  turned.flipper_rad[robot::kFrontLeft] = 0;
-  CHECK(shown(robot) != shown(turned));
+  placed.description = turned.description = front;
+  CHECK(shown(placed) == shown(turned));
+  turned.flipper_rad[kenaf::robot::kFrontLeft] = 0;
+  CHECK(shown(placed) != shown(turned));
 }
 
 TEST_CASE("The picture is that of a ray through each pixel, but for a few") {

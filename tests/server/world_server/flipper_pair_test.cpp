@@ -23,7 +23,7 @@ struct FrontPair {
   }
 };
 
-constexpr const char* kPlace = "INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n";
+constexpr const char* kPairPlace = "INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n";
 
 bool has(const std::string& text, std::string_view words) {
   return text.find(words) != std::string::npos;
@@ -34,7 +34,7 @@ bool has(const std::string& text, std::string_view words) {
 TEST_CASE("STA, GETGEO and GETCONF name the joints that the robot has") {
   const FrontPair front;
   Conversation talk(front.options);
-  talk.send(kPlace);
+  talk.send(kPairPlace);
   REQUIRE(talk.run(0.5));
   const std::string status = talk.last("STA");
   CHECK(has(status, "{FRFlipper"));
@@ -51,7 +51,7 @@ TEST_CASE("STA, GETGEO and GETCONF name the joints that the robot has") {
 TEST_CASE("Joints that the robot has not are no joints: SET fails, DRIVE and MULTIDRIVE leave them") {
   const FrontPair front;
   Conversation talk(front.options);
-  talk.send(std::string(kPlace) + "CONTROL {Type Session}\r\n");
+  talk.send(std::string(kPairPlace) + "CONTROL {Type Session}\r\n");
   const robot::JointCommand rear = talk.command().flipper[robot::kRearLeft];
   CHECK(has(talk.answer_to("SET {Type Joint} {Name RLFlipper} {Opcode Angle} {Params 0.3}\r\n"),
             "no joint of that name"));
