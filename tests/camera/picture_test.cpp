@@ -142,7 +142,8 @@ TEST_CASE("Only the flippers that a robot has are in a picture") {
   const auto shown = [&](const RobotSnapshot& placed) {
     WorldSnapshot snapshot;
     snapshot.robots.push_back(placed);
-    return picture_of(world, snapshot, birds_eye_view(placed)).rgb;
+    // from the robot's right, where a front and a rear flipper are seen
+    return picture_of(world, snapshot, eye(pose(0, -2, 0.3, 0, 0, 1.5708))).rgb;
   };
   RobotSnapshot placed = kenaf_at(pose(0, 0, 0.09));
   RobotSnapshot turned = placed;

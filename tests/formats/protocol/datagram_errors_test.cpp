@@ -104,7 +104,7 @@ TEST_CASE("Flags, masks and enumerations out of their range are refused") {
   const std::vector<std::byte> state = encoded(empty_state());
   CHECK(error_of(with(state, 28, 0x80)) == DecodeError::bad_value);  // a field bit that does not exist
   CHECK(error_of(with(state, 30, 0x80)) == DecodeError::bad_value);  // one that would be held
-  CHECK(error_of(with(state, 32, 0x10)) == DecodeError::bad_value);  // an event bit that does not exist
+  CHECK(error_of(with(state, 33, 0x01)) == DecodeError::bad_value);  // an event bit that does not exist
   const std::vector<std::byte> refused = encoded(Refused{1, RefusedReason::busy, {}, 3});
   CHECK(error_of(with(refused, 16, 0)) == DecodeError::bad_value);
   CHECK(error_of(with(refused, 16, 5)) == DecodeError::bad_value);

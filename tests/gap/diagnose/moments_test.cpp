@@ -49,14 +49,16 @@ TEST_CASE("Moments are the worst quarters of a second in the phases with most of
   const std::vector<Overlay> overlays = drawn_overlays(d);
   const std::vector<Moment> moments = moments_of(d, overlays);
   // 51 % of the whole gap is the climb's in the drive, 27 % the cruise's in the body, 22 % the cruise's in the drive
-  // at the same time
-  REQUIRE(moments.size() == 2);
+  REQUIRE(moments.size() == 3);
   const Moment& climb = moments[0];
   CHECK(climb.stage == 0);
   CHECK(climb.group == 1);
   CHECK(climb.at_s == 1.375);  // the middle of the span in which the residual is three times as large
   CHECK(moments[1].stage == 1);
   CHECK(moments[1].group == 0);
+  CHECK(moments[2].stage == 0);
+  CHECK(moments[2].group == 0);
+  CHECK(std::abs(moments[2].at_s - moments[1].at_s) >= 0.125);  // another quarter of a second
 
   // 1.5 s around it, but no longer than the run of 2 s: 25 pictures a second
   REQUIRE(climb.times_s.size() == 51);
@@ -73,7 +75,8 @@ TEST_CASE("Moments are the worst quarters of a second in the phases with most of
   // links: its own moment, one of another stage in the same phase, or else the run
   CHECK(link_to_phase(d, moments, 0, 0) == "#moment-1");
   CHECK(link_to_phase(d, moments, 1, 0) == "#moment-2");
-  CHECK(link_to_phase(d, moments, 0, 1) == "#moment-2");
+  CHECK(link_to_phase(d, moments, 0, 1) == "#moment-3");
+  CHECK(link_to_phase(d, std::span(moments).first(2), 0, 1) == "#moment-2");
   CHECK(link_to_phase(d, {}, 0, 0) == "#run-2");
 }
 
