@@ -87,7 +87,7 @@ drive_fault 8 "track left restarts" "node 1 power loss" "lost: track left (node 
 begin 9; tell inclinometer silent; said program.log "degraded: inclinometer (node 7) is silent"
 pause 0.5; kill -0 "$program" || fail "9: the program ended"
 echo "inclinometer silent                            the robot drives on, degraded"
-end 2>/dev/null
+end 2>/dev/null; tell inclinometer healed
 
 sed 's/^\[can\]$/&\nevent_timer = false/; s/^\[can\.\(track\|flipper\)\]$/&\ndevice = "node-guarding"/' "$robot" >guarding.toml
 [ "$(grep -c -e '^event_timer' -e '^device = "node-guarding"' guarding.toml)" = 3 ] || fail "10: no robot with node guarding"
