@@ -79,7 +79,7 @@ TEST_CASE("A page has every number of every stage") {
   CHECK_THAT(page, Contains("<td>0.05</td><td>0.0123</td><td>0.01</td><td>5</td><td>1.23</td><td>90 %</td>"));
   // of the gap of 200 a tenth is left: 70 % of it in the climb
   CHECK_THAT(page, Contains("<td>70 %</td><td>7 %</td>"));
-  CHECK_THAT(page, Contains("ground_slope and com_forward (4.2 degrees)") && !Contains("(80.0 degrees)"));
+  CHECK_THAT(page, Contains("com_forward and ground_slope (4.2 degrees)") && !Contains("(80.0 degrees)"));
   CHECK_THAT(page, Contains("Yaw rate over turn rate") || Contains("yaw rate over turn rate"));
   CHECK_THAT(page, Contains("Seed of resampling: 4711") && Contains("Simulated runs: 321"));
 }
@@ -99,7 +99,7 @@ TEST_CASE("A named effect is told from what looks like it, unless that is a riva
   stage.isolability.angle_deg = (Eigen::Matrix2d() << 0, 5, 5, 0).finished();
   CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees; told apart here)"));
   stage.decision.effects[0].rivals = {drive_lag, track_separation};
-  CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees)") && !Contains("told apart here"));
+  CHECK_THAT(page_of(d), Contains("drive_lag and track.separation_m (5.0 degrees)<"));
 }
 
 TEST_CASE("The table of look-alikes has the effects of the verdict and their rivals on top, the others folded") {

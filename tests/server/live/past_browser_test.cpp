@@ -131,7 +131,7 @@ TEST_CASE("In a browser: one looks back while the world goes on, nothing drives 
   CHECK(desk.browser.complaints().empty());
 }
 
-TEST_CASE("In a browser: one looks back in a world that is paused, and by the slider; a reset ends it") {
+TEST_CASE("In a browser: one looks back in a world that is paused, and by the slider, and a reset ends it") {
   Desk desk;
   drive_on(desk);
   strike(desk.browser, "KeyP");
