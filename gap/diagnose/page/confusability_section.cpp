@@ -92,7 +92,7 @@ std::string angle_row(const StageDiagnosis& stage, const Angles& angles, std::si
   std::string html = fmt::format("<tr><th scope=\"row\">{}</th>", plot::escaped(angles.names[row]));
   for (std::size_t c = 0; c < angles.names.size(); ++c) {
     if (c == row) {
-      html += "<td class=\"same\"></td>";
+      html += "<td class=\"same\" aria-label=\"itself\"></td>";
       continue;
     }
     const double deg = angles.deg(static_cast<Index>(row), static_cast<Index>(c));
