@@ -53,6 +53,13 @@ struct SceneDesk {
   std::string words(const std::string& id) {
     return browser.evaluate("document.getElementById('" + id + "').textContent");
   }
+  // Keys choose a view once the scene is there.
+  void look_from_above() {
+    REQUIRE(support::eventually([&] {
+      press("Digit7");
+      return pressed("view-top");
+    }));
+  }
   void place_at_start() {
     browser.evaluate("document.getElementById('place').click()");
     press("Enter");
@@ -217,7 +224,7 @@ TEST_CASE("In a browser: hills and rubble stand out from level ground, in light 
 
 TEST_CASE("In a browser: a robot is placed where one clicks, or by the keyboard, and Esc places none") {
   SceneDesk desk("flat");
-  desk.press("Digit7");
+  desk.look_from_above();
   desk.browser.evaluate("document.getElementById('place').click()");
   CHECK(desk.pressed("place"));
   desk.press("Escape");
@@ -261,9 +268,9 @@ TEST_CASE("In a browser: a click on a robot chooses it, and a drag does not") {
   desk.browser.wait_for("document.getElementById('robot').options.length === 1");
   two.send("INIT {ClassName USARBot.Kenaf} {Name R2} {Location 0,-0.7,0}\r\n");  // to the left
   desk.browser.wait_for("document.getElementById('robot').options.length === 2");
-  const std::string chosen = "document.getElementById('robot').selectedOptions[0].text";
-  CHECK(desk.browser.evaluate(chosen) == "R1");
-  desk.press("Digit7");
+  const std::string chosen = "document.getElementById('robot').selectedOptions[0]?.text";
+  desk.browser.wait_for(chosen + " === 'R1'");
+  desk.look_from_above();
   // once it is drawn from above
   desk.browser.evaluate("canvasPixels().then(() => canvasPixels()).then(() => 0)");
   const double above_m = kFirstReach_m - 0.1;  // the deck, over the robot's middle, at which one looks
