@@ -3,6 +3,7 @@ import { createBigView } from "./big_view.js";
 import { createHistory } from "./history.js";
 import { createInstruments } from "./instruments.js";
 import { createPast } from "./past.js";
+import { penOf } from "./pen.js";
 import { createPlots } from "./plots.js";
 import { createPosture } from "./posture.js";
 import { createSaving } from "./saving.js";
@@ -13,7 +14,7 @@ async function pngOf(jpeg) {
   if (!jpeg) throw new Error("the camera has sent none yet");
   const image = await createImageBitmap(jpeg), canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [image.width, image.height];
-  canvas.getContext("2d").drawImage(image, 0, 0);
+  penOf(canvas).drawImage(image, 0, 0);
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 

@@ -1,6 +1,7 @@
 // Curves of chosen columns over time: real against simulated, and below it what the simulations differ by, over the
 // band of the floor. The cursor is not drawn here: it moves alone, and the figures at it are text.
 import { fixed } from "./numbers.js";
+import { penOf } from "./pen.js";
 import { indexAt } from "./playback_data.js";
 
 const VALUES_PX = 56, DIFFERENCES_PX = 44, BETWEEN_PX = 8, DEG = 180 / Math.PI;
@@ -123,7 +124,7 @@ export function createCurves(xOf, zoom) {
     canvas.style.height = `${height}px`;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    const pen = canvas.getContext("2d"), left = xOf(zoom.from), right = xOf(zoom.to);
+    const pen = penOf(canvas), left = xOf(zoom.from), right = xOf(zoom.to);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";

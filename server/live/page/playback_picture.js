@@ -1,4 +1,6 @@
 // A picture of what is shown, as a PNG file: the 3D view, the curves, and in words which run, when and how large the gap is.
+import { penOf } from "./pen.js";
+
 const WIDTH_PX = 1200, EDGE_PX = 24, LINE_PX = 22, MOST_VIEW_PX = 640;
 
 // Lines that fit.
@@ -14,7 +16,7 @@ function wrapped(pen, text, width) {
 
 // `view`: the canvas of the 3D view, or null; `curves`: of the curves, each with its title and readings; `words`: lines.
 export function makePicture(view, curves, words) {
-  const picture = document.createElement("canvas"), pen = picture.getContext("2d"), wide = WIDTH_PX - 2 * EDGE_PX;
+  const picture = document.createElement("canvas"), pen = penOf(picture), wide = WIDTH_PX - 2 * EDGE_PX;
   const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
   const font = "15px system-ui, sans-serif";
   pen.font = font;

@@ -1,5 +1,6 @@
 // One signal of the chosen robot over the shown time, with its values at the cursor.
 import { fixed } from "./numbers.js";
+import { penOf } from "./pen.js";
 import { SIGNALS, axisOf, rowsOf } from "./signals.js";
 
 const LEFT_PX = 34, RIGHT_PX = 4, EDGE_PX = 6;   // EDGE_PX: half of a number
@@ -20,7 +21,7 @@ export function paint(canvas, draw) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
   }
-  const pen = canvas.getContext("2d"), style = getComputedStyle(document.documentElement);
+  const pen = penOf(canvas), style = getComputedStyle(document.documentElement);
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);
   pen.font = "11px system-ui, sans-serif";

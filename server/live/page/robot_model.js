@@ -3,6 +3,7 @@
 //
 // Frame of the server: x forward, y left, z up.
 import * as THREE from "/three/build/three.module.js";
+import { penOf } from "./pen.js";
 
 const COLOURS = { hull: 0xecba28, side: 0x606268, front: 0xde602c, rear: 0x4670b0, eye: 0xe9efe9 };
 const STRIPE_M = 0.04;   // from lug to lug
@@ -11,7 +12,7 @@ function beltTexture() {
   const canvas = document.createElement("canvas");
   canvas.width = 16;
   canvas.height = 4;
-  const pen = canvas.getContext("2d");
+  const pen = penOf(canvas);
   pen.fillStyle = "#3b3e3f";
   pen.fillRect(0, 0, 16, 4);
   pen.fillStyle = "#6c7070";
