@@ -7,7 +7,8 @@ import base64, json, os, pathlib, selectors, shutil, signal, subprocess, sys, te
 PATIENCE_S = 300  # for hangs alone: software draws the pages, perhaps on a busy machine
 
 # A sandbox needs rights that a container lacks; the pages are our own. Software draws: there is no GPU to rely on.
-SWITCHES = '''--headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --disable-dev-shm-usage --hide-scrollbars
+# It draws what WebGL asks for alone: a page put together by it takes seconds a picture.
+SWITCHES = '''--headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --disable-gpu-compositing --disable-dev-shm-usage --hide-scrollbars
     --no-first-run --disable-background-networking --disable-component-update --remote-debugging-pipe'''.split()
 
 

@@ -31,13 +31,13 @@
     }
 
     table.setAttribute("role", "grid");
-    for (const cell of table.querySelectorAll("td")) cell.tabIndex = -1;
+    for (const cell of table.querySelectorAll("tbody td")) cell.tabIndex = -1;
     const first = shownRows()[0] ?? table.tBodies[0].rows[0];
     choose(cellsOf(first)[0]);
     readout.textContent = usual;
     readout.hidden = false;
 
-    const cellAt = (event) => event.target.closest("td");
+    const cellAt = (event) => event.target.closest("tbody td");
     table.addEventListener("pointerover", (event) => show(cellAt(event) ?? (table.contains(document.activeElement) ? now : null)));
     table.addEventListener("pointerleave", () => show(table.contains(document.activeElement) ? now : null));
     table.addEventListener("focusin", (event) => { const cell = cellAt(event); if (cell) { choose(cell); show(cell); } });

@@ -40,11 +40,13 @@ Browser::Browser(const std::filesystem::path& profile, const std::vector<std::st
   if (::pipe2(there, O_CLOEXEC) != 0 || ::pipe2(back, O_CLOEXEC) != 0) throw std::runtime_error("no pipes");
   const std::string data = "--user-data-dir=" + profile.string();
   // A sandbox needs rights that a container lacks; the page is our own. Software draws: there is no GPU to rely on.
+  // It draws what WebGL asks for alone: a page put together by it takes seconds a picture.
   std::vector<const char*> argv{KENAF_CHROMIUM,
                                 "--headless",
                                 "--no-sandbox",
                                 "--use-angle=swiftshader",
                                 "--enable-unsafe-swiftshader",
+                                "--disable-gpu-compositing",
                                 "--disable-dev-shm-usage",
                                 "--hide-scrollbars",
                                 "--no-first-run",

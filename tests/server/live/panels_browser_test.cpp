@@ -204,7 +204,7 @@ TEST_CASE("In a browser: a gamepad drives while its dead-man is held, and Space 
 TEST_CASE("In a browser: a reload keeps the chosen robot and the pace") {
   Desk desk;
   for (const char* name : {"Manual1", "Manual2"}) {
-    desk.browser.evaluate("document.getElementById('place').click()");
+    desk.place();
     desk.browser.wait_for(std::string("document.getElementById('robot').selectedOptions[0]?.text === '") + name + "'");
   }
   desk.browser.evaluate(
