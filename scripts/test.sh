@@ -4,10 +4,11 @@
 #   scripts/test.sh                 check, release, asan, fuzz and tsan
 #   scripts/test.sh release asan    only the named parts, of:
 #       check     scripts/check.sh, its two slow parts for 60 s each
-#       release   g++, as installed: all tests, the CAN bus, the package
+#       release   g++, as installed: all tests but those of `bus`, the package
 #       asan      clang, address and undefined behaviour sanitizers: the rooms that take input from others, without what only calculates
 #       fuzz      the fuzzers of that build, 1 s each: all but kenaf-gap's
 #       tsan      g++, thread sanitizer: the relay and the libraries
+#       bus       release, more robots on a CAN bus: minutes each where the bus has to be emulated
 #       asan-all  asan with all rooms; then all fuzzers, FUZZ_SECONDS each (default 60). Takes most of an hour.
 #
 # Installs what is missing. Exit status 0: all tests passed.
@@ -43,7 +44,13 @@ run_check() {
 run_release() {
   build release
   step "tests, release"
-  ctest --preset release -j "$tests_at_once"
+  ctest --preset release -j "$tests_at_once" -LE more-robots
+}
+
+run_bus() {
+  build release
+  step "more robots on a CAN bus, release"
+  ctest --preset release -j "$jobs" -L more-robots
 }
 
 run_asan() { sanitized_tests asan 'release-only|calculates'; }
@@ -89,8 +96,8 @@ run_fuzzer() {
 scripts/install-dependencies.sh
 for part in "${parts[@]}"; do
   case $part in
-    check|release|asan|fuzz|tsan|asan-all) "run_$part" ;;
-    *) echo "test: '$part' is not one of check, release, asan, fuzz, tsan, asan-all" >&2; exit 2 ;;
+    check|release|asan|fuzz|tsan|bus|asan-all) "run_$part" ;;
+    *) echo "test: '$part' is not one of check, release, asan, fuzz, tsan, bus, asan-all" >&2; exit 2 ;;
   esac
 done
 step "all parts passed: ${parts[*]}"
