@@ -1,5 +1,6 @@
 // What is on a robot's bus in its description: any text gives a bus whose nodes differ and whose numbers the drives can
 // hold, or an error with a place.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

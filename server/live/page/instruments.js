@@ -1,5 +1,6 @@
 // The chosen robot in figures.
 import { fixed } from "./numbers.js";
+import { letDrag } from "./reading_drag.js";
 import { angles } from "./world.js";
 
 const ROWS = [   // label, text of a robot's state, wide, its signal (signals.js)
@@ -28,8 +29,8 @@ function clientText(now) {
   return `last command ${now.client.age.toFixed(2)} s ago${late}${now.holder ? ", kept out" : ""}`;
 }
 
-// `plot(signal)`: the person pressed a reading that has one.
-export function createInstruments(plot) {
+// `plot(signal)`: the person pressed a reading that has one; `show(signal)`: it was dragged to the plots.
+export function createInstruments(plot, show) {
   const list = document.getElementById("readings"), buttons = new Map();
   function makeButton(label, signal) {
     const button = document.createElement("button");
@@ -37,6 +38,7 @@ export function createInstruments(plot) {
     button.className = "reading";
     button.textContent = label;
     button.title = `Plot of ${label}`;
+    letDrag(button, document.getElementById("timeline"), () => show(signal));
     button.addEventListener("click", () => plot(signal));
     buttons.set(signal, button);
     return button;

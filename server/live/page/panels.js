@@ -47,7 +47,7 @@ export function createPanels({ world, driving, view, jpeg, complain }) {
     mine: driving.holding,
   });
   const timeWindow = createTimeWindow(history, past);
-  const instruments = createInstruments((signal) => plots.toggle(signal));
+  const instruments = createInstruments((signal) => plots.toggle(signal), (signal) => plots.show(signal));
   const posture = createPosture();
   const plots = createPlots(history, past, timeWindow, chosen, instruments.mark);
   const timeLine = createTimeLine(history, past, timeWindow, plots.draw);

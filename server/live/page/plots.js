@@ -63,6 +63,12 @@ export function createPlots(history, past, timeWindow, chosen, changed) {
     drawAxis(range);
   }
 
+  function show(key) {
+    if (!plots.some((plot) => plot.key === key)) add(key);
+    plots.find((plot) => plot.key === key).root.scrollIntoView({ block: "nearest" });
+    store();
+  }
+
   for (const key of Array.isArray(kept) ? new Set(kept) : USUAL) if (Object.hasOwn(SIGNALS, key)) add(key);
   store();
   new ResizeObserver(draw).observe(list);
@@ -71,11 +77,9 @@ export function createPlots(history, past, timeWindow, chosen, changed) {
     draw,
     // A second time takes the plot away.
     toggle(key) {
-      if (plots.some((plot) => plot.key === key)) return remove(key);
-      add(key);
-      plots[plots.length - 1].root.scrollIntoView({ block: "nearest" });
-      store();
+      if (plots.some((plot) => plot.key === key)) remove(key); else show(key);
     },
+    show,
     update() { if (!document.hidden && performance.now() >= drawn_ms + DRAW_MS) draw(); },
   };
 }

@@ -313,6 +313,36 @@ TEST_CASE("In a browser: a reading that is pressed is plotted, with its values a
   CHECK(desk.browser.complaints().empty());
 }
 
+TEST_CASE(
+    "In a browser: a reading that is dragged to the plots is plotted; dragged again, or elsewhere, nothing changes") {
+  Desk desk;
+  const std::string plots = "[...document.querySelectorAll('.plot')].map((plot) => plot.dataset.signal).join()";
+  const auto middle_of = [&](const std::string& element) {
+    return desk.browser.evaluate(
+        "(() => { const box = " + element +
+        ".getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()");
+  };
+  const json reading =
+      middle_of("[...document.querySelectorAll('button.reading')].find((each) => each.textContent === 'Heading')");
+  const auto drag_to = [&](const json& place) {
+    desk.browser.mouse("mousePressed", reading[0], reading[1]);
+    desk.browser.mouse("mouseMoved", place[0], place[1]);
+    desk.browser.mouse("mouseReleased", place[0], place[1]);
+  };
+  const json to_plots = middle_of("document.getElementById('timeline')");
+  drag_to(to_plots);
+  CHECK(desk.browser.evaluate(plots) == "speed,pitch,currents,heading");
+  drag_to(to_plots);
+  CHECK(desk.browser.evaluate(plots) == "speed,pitch,currents,heading");
+  drag_to(middle_of("document.getElementById('view')"));
+  CHECK(desk.browser.evaluate(plots) == "speed,pitch,currents,heading");
+  // no drag: a press, which takes the plot away
+  desk.browser.mouse("mousePressed", reading[0], reading[1]);
+  desk.browser.mouse("mouseReleased", reading[0], reading[1]);
+  CHECK(desk.browser.evaluate(plots) == "speed,pitch,currents");
+  CHECK(desk.browser.complaints().empty());
+}
+
 TEST_CASE("In a browser: the axis of a plot has round numbers, and a heading goes on over half a turn") {
   Desk desk;
   desk.browser.evaluate("import('/signals.js').then((all) => { window.signals = all; return 0; })");
