@@ -33,8 +33,9 @@ class ChangedRobot {
   support::TemporaryFolder folder_;
 };
 
-// To be put before [can.inclinometer]: flippers that are home where they stand, at 0.7 rad.
-inline const std::string kHomeHere =
+// To be put before [can.inclinometer]: flippers that are home where they stand, at 0.7 rad. A constant expression: the
+// compilers do not agree on whether an inline std::string is there before what a test's file makes of it.
+inline constexpr const char* kHomeHere =
     "\n[can.flipper.homing]\nmethod = 37\nhome_rad = 0.7\nspeed_radps = 0.5\nacceleration_radps2 = 5.0\n"
     "patience_s = 20.0\n";
 

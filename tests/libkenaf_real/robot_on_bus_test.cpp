@@ -173,7 +173,7 @@ TEST_CASE("A robot with cyclic modes drives the same way, on the master's ramps"
 }
 
 TEST_CASE("Flippers without absolute encoders are homed where they stand, or at their switch") {
-  const ChangedRobot here({{"\n[can.inclinometer]", kHomeHere + "\n[can.inclinometer]"}});
+  const ChangedRobot here({{"\n[can.inclinometer]", std::string(kHomeHere) + "\n[can.inclinometer]"}});
   RobotOnBus robot(here.path());
   robot.open();
   // the arm stood at what the description calls 0.7 rad, wherever the encoder began
