@@ -129,12 +129,12 @@ hrt::Connection CanTransport::open(const hrt_config& config) {
 hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
+  s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   check_real_time(s.robot);
   if (s.robot.realtime_priority) {
     s.of_opener = scheduling_of_caller();
     begin_real_time(s.robot);
   }
-  s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
   s.master.watch_pauses(to_time(s.robot.master_silence_s));
   s.cycle.start();

@@ -14,8 +14,7 @@ constexpr std::uint32_t kStateFieldBits = kEveryField | robot::held(kEveryField)
 constexpr std::uint32_t kWorldServerLost = 1u << 0, kStoppedBySilence = 1u << 1, kWorldPaused = 1u << 2,
                         kNotAtStart = 1u << 3;
 constexpr std::uint32_t kNoFlipper = 1u << 4;  // the first of four: one for each flipper
-constexpr std::uint32_t kStateEventBits =
-    kWorldServerLost | kStoppedBySilence | kWorldPaused | kNotAtStart | kFlipperMaskBits * kNoFlipper;
+constexpr std::uint32_t kStateEventBits = kWorldServerLost | kStoppedBySilence | kWorldPaused | kNotAtStart;
 
 // Each overload lists the fields of one kind in their order on the wire.
 void walk(auto& io, Hello& m) {
@@ -60,7 +59,8 @@ void walk(auto& io, State& m) {
   std::uint32_t events = (m.world_server_lost ? kWorldServerLost : 0) |
                          (m.robot.stopped_by_silence ? kStoppedBySilence : 0) | (m.world_paused ? kWorldPaused : 0) |
                          (m.not_at_start ? kNotAtStart : 0);
-  // A flipper that the robot has not is a bit, and its angle 0: robot::kNoFlipper is no number of a datagram.
+  // A flipper that a robot with flippers has not is a bit, and its angle 0: robot::kNoFlipper is no number of a
+  // datagram.
   const bool has_flippers = (m.robot.fields & robot::kHasFlippers) != 0;
   std::array<double, robot::kFlipperCount> flipper_rad = m.robot.flipper_rad;
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
@@ -68,7 +68,7 @@ void walk(auto& io, State& m) {
     flipper_rad[i] = 0;
     if (has_flippers) events |= kNoFlipper << i;
   }
-  io.bits(events, kStateEventBits);
+  io.bits(events, kStateEventBits | (has_flippers ? kFlipperMaskBits * kNoFlipper : 0));
   m.world_server_lost = (events & kWorldServerLost) != 0;
   m.robot.stopped_by_silence = (events & kStoppedBySilence) != 0;
   m.world_paused = (events & kWorldPaused) != 0;
@@ -81,8 +81,11 @@ void walk(auto& io, State& m) {
   io.numbers(m.robot.track_mps);
   io.numbers(m.robot.track_a);
   io.numbers(flipper_rad);
-  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-    m.robot.flipper_rad[i] = (events & kNoFlipper << i) != 0 ? robot::kNoFlipper : flipper_rad[i];
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const bool has = (events & kNoFlipper << i) == 0;
+    io.check(has || (flipper_rad[i] == 0 && !std::signbit(flipper_rad[i])));
+    m.robot.flipper_rad[i] = has ? flipper_rad[i] : robot::kNoFlipper;
+  }
   io.numbers(m.robot.flipper_a);
   io.number(m.robot.battery_v);
   io.numbers(m.robot.p_WB_m);

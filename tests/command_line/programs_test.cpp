@@ -35,6 +35,10 @@ std::vector<std::string> programs() {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
+bool is_built(const std::string& program) {
+  return std::ranges::count(programs(), program) > 0;
+}
+
 std::string program_of(const std::string& command) {
   return command.substr(0, command.find(' '));
 }
@@ -224,19 +228,20 @@ TEST_CASE("Every list of words of every program: a word that is not in it, and o
       }
     }
   }
-  CHECK(lists > 0);
+  CHECK((lists > 0 || !is_built("kenaf-world")));  // the robot's side alone has no such list
 }
 
 TEST_CASE("A shipped description whose name is misspelt, and addresses that are none") {
   const test::TemporaryFolder folder;
-  const std::vector<std::string> all = programs();
   const auto check = [&](const std::string& command, const std::string& words) {
-    if (std::ranges::find(all, program_of(command)) != all.end()) check_refused(folder, command, words);
+    if (is_built(program_of(command))) check_refused(folder, command, words);
   };
   for (const std::string program : {"kenaf-world", "kenaf-relayd --embedded", "kenaf-candrives"}) {
-    check(program + " --world flatt",
-          "--world flatt: must be the path of a file that ends in .sdf, or one of boxes, flat,");
-    check(program + " --world flatt", "; did you mean flat?");
+    if (is_built("kenaf-world")) {  // else there are drives, but no world around them
+      check(program + " --world flatt",
+            "--world flatt: must be the path of a file that ends in .sdf, or one of boxes, flat,");
+      check(program + " --world flatt", "; did you mean flat?");
+    }
     check(program + " --robot kenaff", "; did you mean kenaf?");
   }
   for (const std::string wrong : {"nowhere", "[::1", "127.0.0.1:1", "''"})

@@ -120,6 +120,24 @@ TEST_CASE("A flipper that the robot has not is an event bit, and comes back as n
   CHECK(encoded(state)[32] == std::byte{0});
 }
 
+TEST_CASE("An angle of a flipper that is not there, and a missing one of a robot without flippers, are no State") {
+  State state{};
+  state.session = kSessionValue;
+  state.robot.fields = kenaf::robot::kHasFlippers;
+  state.robot.flipper_rad = {1, 2, 3, kenaf::robot::kNoFlipper};
+  const std::vector<std::byte> bytes = encoded(state);
+  Datagram read = Bye{9};
+  for (const std::byte last : {std::byte{0x80}, std::byte{0x3f}}) {  // of flipper 3's angle: -0, and one
+    std::vector<std::byte> angle = bytes;
+    angle[195] = last;
+    CHECK(decode(angle, read) == DecodeError::bad_value);
+  }
+  std::vector<std::byte> none = bytes;
+  none[28] = std::byte{0};  // bit 2 of the fields
+  CHECK(decode(none, read) == DecodeError::bad_value);
+  CHECK(decode(bytes, read) == DecodeError::none);
+}
+
 TEST_CASE("Bye is the header alone, Ping and Pong carry their number") {
   check_bytes(Bye{kSessionValue}, "4b 4e 41 46 01 06 10 00 " + kSession);
   check_bytes(Ping{kSessionValue, 5}, "4b 4e 41 46 01 07 14 00 " + kSession + "05 00 00 00");
