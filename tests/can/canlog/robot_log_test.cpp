@@ -67,7 +67,7 @@ TEST_CASE("The real library and the simulated drives break no rule, from boot to
 
 TEST_CASE("Homing: the bit that starts it is down before the mode changes") {
   // bit 4 of the controlword starts the homing, and is a new set-point in profile position mode
-  const real::ChangedRobot homed({{"\n[can.inclinometer]", real::kHomeHere + "\n[can.inclinometer]"}});
+  const real::ChangedRobot homed({{"\n[can.inclinometer]", std::string(real::kHomeHere) + "\n[can.inclinometer]"}});
   real::RobotOnBus robot(homed.path());
   drive(robot);
   CHECK(broken_rules(robot) == kNone);
