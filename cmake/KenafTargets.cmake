@@ -164,12 +164,12 @@ function(kenaf_test_settings name)
   endif()
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ONE_AT_A_TIME]): one Catch2 program;
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ALONE]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
 # [long]), and starts those of the highest cost first. The cases of files whose names begin with hostile also have the
 # label hostile.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "ONE_AT_A_TIME" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "ALONE" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_COST)
     set(TEST_COST 0)
   endif()
@@ -183,9 +183,9 @@ function(kenaf_test name)
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
   if(NOT KENAF_SANITIZE)
-    set(lock "")
-    if(TEST_ONE_AT_A_TIME)
-      set(lock RESOURCE_LOCK ${name})
+    set(alone "")
+    if(TEST_ALONE)
+      set(alone RUN_SERIAL TRUE)
     endif()
     # a name that ctest takes for another (it parts them at semicolons) would run nothing, and pass; Catch2 3 refuses by itself
     set(none_fails EXTRA_ARGS --warn NoTests)
@@ -213,7 +213,7 @@ function(kenaf_test name)
         TEST_SPEC --filenames-as-tags "${hostile}"
         ${none_fails}
         TEST_PREFIX "${name}: "
-        PROPERTIES LABELS "${labels}${several}hostile" COST ${TEST_COST} ${lock})
+        PROPERTIES LABELS "${labels}${several}hostile" COST ${TEST_COST} ${alone})
       set(not_hostile TEST_SPEC --filenames-as-tags "${not_hostile}")
     endif()
     if(hostile AND all_hostile)
@@ -223,7 +223,7 @@ function(kenaf_test name)
       ${not_hostile}
       ${none_fails}
       TEST_PREFIX "${name}: "
-      PROPERTIES LABELS "${labels}" COST ${TEST_COST} ${lock})
+      PROPERTIES LABELS "${labels}" COST ${TEST_COST} ${alone})
     return()
   endif()
   # a process takes a tenth of a second to start under a sanitizer: one for each file, not for each test case

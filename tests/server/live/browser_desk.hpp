@@ -19,7 +19,7 @@ namespace kenaf::live {
 
 struct Desk {
   support::TemporaryFolder profile;
-  ServedWorld world{"", {}, "step-200"};
+  ServedWorld world{"", patient_limits(), "step-200"};
   Browser browser;
   support::TcpProxy link;
   std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";

@@ -27,7 +27,7 @@ struct SceneDesk {
   Browser browser;
   std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
 
-  explicit SceneDesk(const std::string& name) : world("", {}, name), browser(profile.path()) {
+  explicit SceneDesk(const std::string& name) : world("", patient_limits(), name), browser(profile.path()) {
     std::filesystem::create_directories(pictures);
     browser.resize(1280, 800);
     browser.open(world.url());

@@ -6,8 +6,16 @@
 
 #include "server/live/view.hpp"
 #include "server/world_server/world_server.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::live {
+
+// A page that is drawn without a graphics card may be held up for longer than a server waits for it.
+inline ViewLimits patient_limits() {
+  ViewLimits limits;
+  limits.quiet_s = static_cast<double>(support::patience().count());
+  return limits;
+}
 
 class ServedWorld {
  public:
