@@ -4,6 +4,7 @@ import { ago } from "./past.js";
 
 const STEP_S = 1, LONG_STEP_S = 10;
 const REPLAY_S = 10, FRAME_MS = 40;
+const LONGEST_FRAME_MS = 200;   // a page that was held up goes on from where it was, and skips nothing
 const STEPS = 1000;   // of the slider
 const by = (id) => document.getElementById(id);
 
@@ -30,7 +31,7 @@ export function createTimeLine(history, past, timeWindow, changed) {
   setInterval(() => {
     if (replay && !past.isBack()) replay = null;   // Esc, a robot that was taken over, a reset
     if (!replay) return;
-    const now_ms = performance.now(), next_s = past.shown_s() + (now_ms - replay.last_ms) / 1000;
+    const now_ms = performance.now(), next_s = past.shown_s() + Math.min(now_ms - replay.last_ms, LONGEST_FRAME_MS) / 1000;
     replay.last_ms = now_ms;
     if (next_s >= replay.to_s) live(); else past.lookAt(next_s);
   }, FRAME_MS);
