@@ -163,6 +163,9 @@ TEST_CASE("In a browser: one looks back in a world that is paused, and by the sl
 TEST_CASE("In a browser: a replay shows what was, moment by moment, and ends live") {
   Desk desk;
   drive_on(desk);
+  // it has stood for longer than a picture of the replay may take
+  desk.browser.evaluate("window.stood_s = parseFloat(document.getElementById('time').textContent), 0");
+  desk.browser.wait_for("parseFloat(document.getElementById('time').textContent) > stood_s + 1");
   desk.browser.evaluate(
       "window.places = [], new MutationObserver(() => { if (document.body.hasAttribute('data-past')) places.push(" +
       std::string(kShownX) + "); }).observe(document.getElementById('readings'), { subtree: true, childList: true })");
@@ -172,10 +175,10 @@ TEST_CASE("In a browser: a replay shows what was, moment by moment, and ends liv
   desk.browser.wait_for("document.getElementById('past-banner').hidden");
   desk.browser.wait_for("document.getElementById('replay').ariaPressed === 'false'");
   desk.state_is("held");
-  // from where it stood, forward all the way, in as many pictures as the page has time for; then where it stands
+  // from where it stood to where it stands, forward all the way
   const std::string known = "places.filter((x) => !Number.isNaN(x))";
   CHECK(desk.browser.evaluate(known + "[0]") < 0.1);
-  CHECK(desk.browser.evaluate(known + ".at(-1) > " + known + "[0]") == true);
+  CHECK(desk.browser.evaluate(known + ".at(-1)") > 0.15);
   CHECK(desk.browser.evaluate(kShownX) > 0.15);
   CHECK(desk.browser.evaluate(known + ".every((x, i, all) => i === 0 || x >= all[i - 1] - 0.02)") == true);
   CHECK(desk.browser.complaints().empty());
