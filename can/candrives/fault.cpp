@@ -25,11 +25,12 @@ bool answers_segment(const Frame& frame) {
 void fill_unused(Frame& answer) {
   constexpr std::uint8_t kUploadAnswer = 0x40, kDownloadAnswer = 0x60, kExpeditedWithSize = 0x03, kNoise = 0xa5;
   const std::uint8_t specifier = answer.data[0] & 0xe0;
-  std::size_t used = answer.length;
+  const std::size_t length = std::min<std::size_t>(answer.length, answer.data.size());
+  std::size_t used = length;
   if (specifier == kDownloadAnswer) used = 4;
   if (specifier == kUploadAnswer && (answer.data[0] & kExpeditedWithSize) == kExpeditedWithSize)
     used = 8u - (answer.data[0] >> 2 & 3u);
-  for (std::size_t i = used; i < answer.length; ++i) answer.data[i] = static_cast<std::uint8_t>(kNoise + 31 * i);
+  for (std::size_t i = used; i < length; ++i) answer.data[i] = static_cast<std::uint8_t>(kNoise + 31 * i);
 }
 
 constexpr std::uint8_t kAbort = 0x80, kToggle = 0x10;
