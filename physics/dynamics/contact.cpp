@@ -33,28 +33,14 @@ btScalar driving_share(const Belt* belt) {
   return belt ? 1 - std::min(belt->slip_spm * std::abs(belt->speed_mps), 1.0) : 0;
 }
 
-// A belt of prescribed speed: its motor supplies the impulse that the contact takes from the belt.
-void hold_against(Belt& belt, Two gain, Two friction_impulse) {
-  if (std::isinf(belt.moving_mass_kg))
-    belt.motor_impulse_ns -= gain[0] * friction_impulse[0] + gain[1] * friction_impulse[1];
-}
-
-// Interleaves a linear and an angular part into the three rows normal, along, across.
-void set_rows(TwoVectors rows[3], const btVector3& normal, const btVector3& arm, const TwoVectors& tangents,
-              const TwoVectors& arms) {
-  rows[0] = side_by_side(normal, arm);
-  rows[1] = lanes(tangents, arms, 0);
-  rows[2] = lanes(tangents, arms, 1);
-}
-
 }  // namespace
 
-Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverBody* solver_a, SolverBody* solver_b,
-                 const Surface& on_a, const Surface& on_b)
+Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, const ContactSide& moves_a,
+                 const ContactSide& moves_b, const Surface& on_a, const Surface& on_b)
     : collider_a(static_cast<const Collider*>(a.getUserPointer())),
       collider_b(static_cast<const Collider*>(b.getUserPointer())),
-      body_a(solver_a),
-      body_b(solver_b),
+      side_a(moves_a),
+      side_b(moves_b),
       surface_a(&on_a),
       surface_b(&on_b),
       belt_axis_a(belt_axis(on_a, a)),
@@ -64,17 +50,51 @@ Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverB
       warm_start_share(
           std::min(on_a.belt ? on_a.belt->warm_start_share : 1, on_b.belt ? on_b.belt->warm_start_share : 1)) {}
 
+// With r from C to the point and the lever l = axis x (p - pivot) of an arm, an axis n of the contact has the row
+//   (n, r x n) - (l . n) g c
+// in which the rate of the arm is g (push - c . velocity), with g = 0 while its servo holds.
+Contact::Rows Contact::rows_of(const ContactSide& side, const btVector3& p_W, const btVector3& normal,
+                               const TwoVectors& tangents) {
+  const ArticulatedBody& body = *side.body;
+  const btVector3 r = p_W - body.p_WC, moment = r.cross(normal);
+  const TwoVectors moments = cross(r, tangents);
+  Rows rows;
+  rows.row[0] = side_by_side(normal, moment);
+  rows.row[1] = lanes(tangents, moments, 0);
+  rows.row[2] = lanes(tangents, moments, 1);
+  if (side.arm) {
+    const btVector3 lever = side.arm->axis_W.cross(p_W - side.arm->pivot_W);
+    rows.lever = lever.dot(normal);
+    rows.levers = dot(lever, tangents);
+    const TwoVectors follows = side.arm->coupling * side.arm->mobility;
+    rows.row[0] -= follows * rows.lever;
+    rows.row[1] -= follows * rows.levers[0];
+    rows.row[2] -= follows * rows.levers[1];
+  }
+  if (body.loose_count > 0) {
+    for (int i = 0; i < 3; ++i) rows.response[i] = body.response(rows.row[i]);
+    return rows;
+  }
+  // The same with the two tangents side by side.
+  const TwoVectors turns = body.inverse_inertia_W * moments;
+  rows.response[0] = side_by_side(normal * body.inverse_mass, body.inverse_inertia_W * moment);
+  rows.response[1] = lanes(tangents * body.inverse_mass, turns, 0);
+  rows.response[2] = lanes(tangents * body.inverse_mass, turns, 1);
+  return rows;
+}
+
 Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step)
-    : body_a_(meeting.body_a),
-      body_b_(meeting.body_b),
+    : a_(meeting.side_a),
+      b_(meeting.side_b),
       belt_a_(meeting.surface_a->belt),
       belt_b_(meeting.surface_b->belt),
-      inverse_mass_a_(body_a_->inverse_mass),
+      inverse_mass_a_(a_.body->inverse_mass),
       stretch_(touch.stretch),
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       collider_a_(meeting.collider_a),
       collider_b_(meeting.collider_b),
       p_W_(touch.p_W),
+      normal_W_(touch.normal_W),
       part_a_(meeting.surface_a->part),
       part_b_(meeting.surface_b->part) {
   const Surface &surface_a = *meeting.surface_a, &surface_b = *meeting.surface_b;
@@ -100,59 +120,50 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   }
   // From here on the two tangents are worked on side by side.
   const TwoVectors tangents = side_by_side(along, normal.cross(along));
+  tangents_W_ = tangents;
 
-  // A belt of speed u adds gain u to the slip; a friction impulse p changes its speed by gain . p / m_b.
-  belt_gain_a_ = belt_gain_b_ = belt_push_a_ = belt_push_b_ = Two{0, 0};
-  if (belt_a_) {
-    belt_gain_a_ = -dot(belt_a, tangents) * meeting.driving_a;
-    belt_push_a_ = belt_gain_a_ / belt_a_->moving_mass_kg;
-  }
-  if (belt_b_) {
-    belt_gain_b_ = dot(belt_b, tangents) * meeting.driving_b;
-    belt_push_b_ = belt_gain_b_ / belt_b_->moving_mass_kg;
-  }
+  // A belt of speed u adds gain u to the slip; a friction impulse p pushes it with gain . p.
+  gain_a_ = gain_b_ = Two{0, 0};
+  if (belt_a_) gain_a_ = -dot(belt_a, tangents) * meeting.driving_a;
+  if (belt_b_) gain_b_ = dot(belt_b, tangents) * meeting.driving_b;
 
-  // Effective inverse masses K = J M^-1 J^T: k00 of the normal, k11, k12, k22 of the tangents. With rows (n, r x n)
-  //   K_ij = (1 / m) n_i . n_j + (r x n_i) . I^-1 (r x n_j)   for each body;
-  // the axes are orthogonal, so 1 / m enters the diagonal only. The coupling of normal and tangents is used one way
-  // only: the effect of the normal impulse on slip.
-  btScalar k00, k12;
-  Two k11_k22;
-  const SolverBody& A = *body_a_;
-  const btVector3 r_a = p_W_ - A.p_W;
-  btVector3 velocity = A.v + A.w.cross(r_a);
-  {
-    const btVector3 arm = r_a.cross(normal), turn = A.inverse_inertia_W * arm;
-    const TwoVectors arms = cross(r_a, tangents), turns = A.inverse_inertia_W * arms;
-    set_rows(row_, normal, arm, tangents, arms);
-    set_rows(response_, normal * A.inverse_mass, turn, tangents * A.inverse_mass, turns);
-    k00 = arm.dot(turn);
-    k11_k22 = dot(arms, turns);
-    k12 = vector_of(arms, 0).dot(vector_of(turns, 1));
-    normal_to_slip_ = dot(turn, arms);
+  // Effective inverse masses K = J M^-1 J^T: k00 of the normal, k11, k12, k22 of the tangents; an arm whose servo
+  // yields adds lever_i lever_j g. The coupling of normal and tangents is used one way only: the effect of the normal
+  // impulse on slip.
+  btScalar k00 = 0, k12 = 0;
+  Two k11_k22{0, 0};
+  normal_to_slip_ = Two{0, 0};
+  const auto add_rows = [&](const Rows& of, const Arm* arm) {
+    k00 += sum_of_lanes(dot(of.row[0], of.response[0]));
+    k11_k22 += Two{sum_of_lanes(dot(of.row[1], of.response[1])), sum_of_lanes(dot(of.row[2], of.response[2]))};
+    k12 += sum_of_lanes(dot(of.row[1], of.response[2]));
+    normal_to_slip_ += Two{sum_of_lanes(dot(of.row[1], of.response[0])), sum_of_lanes(dot(of.row[2], of.response[0]))};
+    if (!arm || arm->mobility == 0) return;
+    k00 += of.lever * of.lever * arm->mobility;
+    k11_k22 += of.levers * of.levers * arm->mobility;
+    k12 += of.levers[0] * of.levers[1] * arm->mobility;
+    normal_to_slip_ += of.levers * (of.lever * arm->mobility);
+  };
+  rows_a_ = rows_of(a_, p_W_, normal, tangents);
+  btVector3 velocity = velocity_without_contacts(*a_.body, a_.arm, p_W_);
+  if (b_.body) {
+    rows_b_ = rows_of(b_, p_W_, normal, tangents);
+    velocity -= velocity_without_contacts(*b_.body, b_.arm, p_W_);
+    if (b_.body == a_.body) merge_rows();
+    add_rows(rows_b_, b_.arm);
   }
-  btScalar inverse_mass = A.inverse_mass;
-  if (body_b_) {
-    const SolverBody& B = *body_b_;
-    const btVector3 r_b = p_W_ - B.p_W;
-    velocity -= B.v + B.w.cross(r_b);
-    const btVector3 arm = r_b.cross(normal), turn = B.inverse_inertia_W * arm;
-    const TwoVectors arms = cross(r_b, tangents), turns = B.inverse_inertia_W * arms;
-    set_rows(row_b_, normal, arm, tangents, arms);
-    set_rows(response_b_, normal, turn, tangents, turns);
-    k00 += arm.dot(turn);
-    k11_k22 += dot(arms, turns);
-    k12 += vector_of(arms, 0).dot(vector_of(turns, 1));
-    normal_to_slip_ += dot(turn, arms);
-    inverse_mass += B.inverse_mass;
-  }
+  add_rows(rows_a_, a_.arm);
 
-  // The shares of mass, and of the belts: gain gain^T / m_b.
-  k00 += inverse_mass;
-  k11_k22 = k11_k22 + inverse_mass + (belt_gain_a_ * belt_push_a_ + belt_gain_b_ * belt_push_b_);
-  k12 += belt_gain_a_[0] * belt_push_a_[1] + belt_gain_b_[0] * belt_push_b_[1];
-  normal_velocity_ = normal.dot(velocity);
+  // Belts that their motors do not hold: gain gain^T times the mobility.
   slip_ = dot(velocity, tangents);
+  const auto add_belt = [&](const Belt& belt, Two gain) {
+    k11_k22 += gain * gain * belt.mobility_per_kg;
+    k12 += gain[0] * gain[1] * belt.mobility_per_kg;
+    slip_ += gain * belt.base_mps;
+  };
+  if (belt_a_) add_belt(*belt_a_, gain_a_);
+  if (belt_b_) add_belt(*belt_b_, gain_b_);
+  normal_velocity_ = normal.dot(velocity);
 
   // Spring and damper, implicit: p = -h (k (gap + h v) + d v), p >= 0. Solved for v:
   //   v = -k gap / (h k + d) - p / (h (h k + d)) = give_velocity - softness p
@@ -179,33 +190,47 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   const btScalar largest = (s11 + s22) / 2 + std::sqrt(difference * difference + s12 * s12);
   slide_step_ = 1 / largest * mu_;
 
-  // The last step's impulses to start from.
+  // The last step's impulses to start from. Where a contact slid, the slip gives its friction; where it stuck, a part
+  // of it may be a pull of belts against each other, which fades.
+  constexpr btScalar kSlid = 0.999;  // of the limit
   normal_impulse_ = *touch.stored_impulse[0];
-  friction_impulse_ = meeting.warm_start_share * Two{*touch.stored_impulse[1], *touch.stored_impulse[2]};
+  friction_impulse_ = Two{*touch.stored_impulse[1], *touch.stored_impulse[2]};
+  const Two scaled = friction_impulse_ * inverse_mu_;
+  const btScalar limit = kSlid * normal_impulse_;
+  if (stretch_.to <= 0 && scaled[0] * scaled[0] + scaled[1] * scaled[1] < limit * limit)
+    friction_impulse_ *= meeting.warm_start_share;
+}
+
+// Of two arms of one body: what the two rows do to the body is their difference, in A's; their levers stay apart.
+void Contact::merge_rows() {
+  for (int i = 0; i < 3; ++i) {
+    rows_a_.row[i] -= rows_b_.row[i];
+    rows_a_.response[i] -= rows_b_.response[i];
+    rows_b_.row[i] = rows_b_.response[i] = TwoVectors{};
+  }
 }
 
 // Inline: as a call it makes the computation of a time step 8 % slower.
 template <bool kOnGround>
 [[gnu::always_inline]] inline void Contact::apply(Moved a, btScalar normal, Two friction) {
-  a.delta += response_[0] * normal + response_[1] * friction[0] + response_[2] * friction[1];
-  if (belt_a_) {
-    a.load_ns += normal;
-    a.belt_mps += belt_push_a_[0] * friction[0] + belt_push_a_[1] * friction[1];
-  }
+  a.delta += rows_a_.response[0] * normal + rows_a_.response[1] * friction[0] + rows_a_.response[2] * friction[1];
+  a.arm_nms += rows_a_.lever * normal + sum_of_lanes(rows_a_.levers * friction);
+  a.load_ns += normal;
+  a.belt_ns += sum_of_lanes(gain_a_ * friction);
   if constexpr (kOnGround) return;
-  if (body_b_) {
-    const Two inverse_mass{body_b_->inverse_mass, 1};  // the linear part of response_b_ lacks it
-    body_b_->delta -=
-        (response_b_[0] * normal + response_b_[1] * friction[0] + response_b_[2] * friction[1]) * inverse_mass;
+  if (b_.body) {
+    b_.body->delta -=
+        rows_b_.response[0] * normal + rows_b_.response[1] * friction[0] + rows_b_.response[2] * friction[1];
+    if (b_.arm) b_.arm->push_nms -= rows_b_.lever * normal + sum_of_lanes(rows_b_.levers * friction);
   }
   if (belt_b_) {
     belt_b_->load_ns += normal;
-    belt_b_->speed_mps += belt_push_b_[0] * friction[0] + belt_push_b_[1] * friction[1];
+    belt_b_->push_ns += sum_of_lanes(gain_b_ * friction);
   }
 }
 
 void Contact::warm_start() {
-  btScalar none = 0;
+  Nothing none;
   apply<false>(in_place(none), normal_impulse_, friction_impulse_);
 }
 
@@ -254,19 +279,13 @@ void Contact::warm_start() {
 
 template <bool kOnGround, bool kSomeShear>
 [[gnu::always_inline]] inline btScalar Contact::solve_one(Moved a) {
-  // Velocity change of A relative to B, without B's angular part, whose rows have arms of their own.
-  const bool b_moves = !kOnGround && body_b_;
-  TwoVectors relative = a.delta;
-  if (b_moves) {
-    const TwoVectors& b = body_b_->delta;
-    relative -= {Two{b.x[0], 0}, Two{b.y[0], 0}, Two{b.z[0], 0}};
-  }
-
   // Normal: one Newton step of v - give_velocity + softness p = 0, clamped to p >= 0. A contact that is and stays open
   // changes nothing.
-  const Two normal_parts = dot(row_[0], relative);
-  btScalar velocity = normal_velocity_ + normal_parts[0] + normal_parts[1];
-  if (b_moves) velocity -= dot(row_b_[0], body_b_->delta)[1];
+  const bool b_moves = !kOnGround && b_.body;
+  const btScalar rate_a = a.arm_mobility * a.arm_nms;
+  const btScalar rate_b = b_moves && b_.arm ? b_.arm->mobility * b_.arm->push_nms : 0;
+  btScalar velocity = normal_velocity_ + sum_of_lanes(dot(rows_a_.row[0], a.delta)) + rows_a_.lever * rate_a;
+  if (b_moves) velocity -= sum_of_lanes(dot(rows_b_.row[0], b_.body->delta)) + rows_b_.lever * rate_b;
   const btScalar normal =
       std::max(normal_impulse_ - (velocity - give_velocity_ + softness_ * normal_impulse_) * normal_mass_, btScalar(0));
   const btScalar normal_change = normal - normal_impulse_;
@@ -275,12 +294,16 @@ template <bool kOnGround, bool kSomeShear>
   // Friction: the slip with the normal's change and the belts' speeds in it.
   Two friction{0, 0};
   if (normal > 0) {
-    const Two along = dot(row_[1], relative), across = dot(row_[2], relative);
-    Two slip = slip_ + Two{along[0], across[0]} + Two{along[1], across[1]};
-    if (b_moves) slip -= Two{dot(row_b_[1], body_b_->delta)[1], dot(row_b_[2], body_b_->delta)[1]};
+    const Two along = dot(rows_a_.row[1], a.delta), across = dot(rows_a_.row[2], a.delta);
+    Two slip = slip_ + Two{along[0], across[0]} + Two{along[1], across[1]} + rows_a_.levers * rate_a;
+    if (b_moves) {
+      const TwoVectors& delta_b = b_.body->delta;
+      slip -= Two{sum_of_lanes(dot(rows_b_.row[1], delta_b)), sum_of_lanes(dot(rows_b_.row[2], delta_b))};
+      slip -= rows_b_.levers * rate_b;
+    }
     slip += normal_to_slip_ * normal_change;
-    if (belt_a_) slip += belt_gain_a_ * a.belt_mps;
-    if (!kOnGround && belt_b_) slip += belt_gain_b_ * belt_b_->speed_mps;
+    slip += gain_a_ * (a.belt_mobility * a.belt_ns);
+    if (!kOnGround && belt_b_) slip += gain_b_ * (belt_b_->mobility_per_kg * belt_b_->push_ns);
     friction = kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal) : coulomb_friction(slip, normal);
   }
 
@@ -294,14 +317,19 @@ template <bool kOnGround, bool kSomeShear>
          inverse_mass_a_ * inverse_mass_a_;
 }
 
-Contact::Moved Contact::in_place(btScalar& none) const {
-  if (!belt_a_) return {body_a_->delta, none, none};
-  return {body_a_->delta, belt_a_->speed_mps, belt_a_->load_ns};
+Contact::Moved Contact::in_place(Nothing& none) const {
+  return {.delta = a_.body->delta,
+          .arm_nms = a_.arm ? a_.arm->push_nms : none.arm_nms,
+          .belt_ns = belt_a_ ? belt_a_->push_ns : none.belt_ns,
+          .load_ns = belt_a_ ? belt_a_->load_ns : none.load_ns,
+          .arm_mobility = a_.arm ? a_.arm->mobility : 0,
+          .belt_mobility = belt_a_ ? belt_a_->mobility_per_kg : 0};
 }
 
 template <bool kSomeShear>
 btScalar Contact::solve_each(std::span<Contact> contacts) {
-  btScalar residual = 0, none = 0;
+  btScalar residual = 0;
+  Nothing none;
   for (auto next = contacts.begin(); next != contacts.end();) {
     const Contact& first = *next;
     const Moved place = first.in_place(none);
@@ -314,13 +342,15 @@ btScalar Contact::solve_each(std::span<Contact> contacts) {
     // The contacts of one body on fixed ground: A's state stays in registers from contact to contact. Through memory,
     // the computation of a time step is 3 % slower.
     TwoVectors delta = place.delta;
-    btScalar belt_mps = place.belt_mps, load_ns = place.load_ns;
-    for (; next != contacts.end() && next->on_ground() && next->body_a_ == first.body_a_ &&
-           next->belt_a_ == first.belt_a_;
+    btScalar arm_nms = place.arm_nms, belt_ns = place.belt_ns, load_ns = place.load_ns;
+    const Moved kept{delta, arm_nms, belt_ns, load_ns, place.arm_mobility, place.belt_mobility};
+    for (; next != contacts.end() && next->on_ground() && next->a_.body == first.a_.body &&
+           next->a_.arm == first.a_.arm && next->belt_a_ == first.belt_a_;
          ++next)
-      residual = std::max(residual, next->solve_one<true, kSomeShear>({delta, belt_mps, load_ns}));
+      residual = std::max(residual, next->solve_one<true, kSomeShear>(kept));
     place.delta = delta;
-    place.belt_mps = belt_mps;
+    place.arm_nms = arm_nms;
+    place.belt_ns = belt_ns;
     place.load_ns = load_ns;
   }
   return residual;
@@ -330,12 +360,10 @@ btScalar Contact::solve(std::span<Contact> contacts, bool some_shear) {
   return some_shear ? solve_each<true>(contacts) : solve_each<false>(contacts);
 }
 
-void Contact::finish() {
+void Contact::keep_impulses() const {
   *stored_impulse_[0] = normal_impulse_;
   *stored_impulse_[1] = friction_impulse_[0];
   *stored_impulse_[2] = friction_impulse_[1];
-  if (belt_a_) hold_against(*belt_a_, belt_gain_a_, friction_impulse_);
-  if (belt_b_) hold_against(*belt_b_, belt_gain_b_, friction_impulse_);
 }
 
 }  // namespace kenaf::physics

@@ -4,9 +4,9 @@
 
 #include <span>
 
+#include "physics/dynamics/articulated_body.hpp"
 #include "physics/dynamics/bullet.hpp"
 #include "physics/dynamics/shear.hpp"
-#include "physics/dynamics/solver_body.hpp"
 #include "physics/dynamics/surface.hpp"
 
 namespace kenaf::physics {
@@ -16,19 +16,25 @@ struct ContactSettings {
   double damping_nspm;
 };
 
+// What a contact moves. arm: on which it is, of that body; null: on the base.
+struct ContactSide {
+  ArticulatedBody* body = nullptr;  // null: it is fixed
+  Arm* arm = nullptr;
+};
+
 // The two bodies that touch. All velocities are those of body A relative to body B; A is never fixed.
 struct Meeting {
   const Collider *collider_a, *collider_b;
-  SolverBody *body_a, *body_b;  // null: B is fixed
+  ContactSide side_a, side_b;
   const Surface *surface_a, *surface_b;
   // The axes about which their belts turn, in W, and the share of the belts' speed that moves their surfaces; unused
   // without a belt.
   btVector3 belt_axis_a, belt_axis_b;
   btScalar driving_a, driving_b;
-  btScalar warm_start_share;  // of the last step's friction impulse that this step starts from
+  btScalar warm_start_share;  // of the last step's friction impulse that a contact which stuck starts from
 
-  Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverBody* solver_a, SolverBody* solver_b,
-          const Surface& on_a, const Surface& on_b);
+  Meeting(const btCollisionObject& a, const btCollisionObject& b, const ContactSide& moves_a,
+          const ContactSide& moves_b, const Surface& on_a, const Surface& on_b);
 };
 
 // One point where they touch, from whichever algorithm.
@@ -48,8 +54,8 @@ class Contact {
   // One iteration over contacts in their order. Returns the largest squared velocity change of a body A. `some_shear`:
   // a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
-  // Writes the impulses back to where they were taken from.
-  void finish();
+  // Writes the impulses to where they were taken from, for the next step or to make the contact anew in this one.
+  void keep_impulses() const;
 
   const Collider& collider_a() const { return *collider_a_; }
   const Collider& collider_b() const { return *collider_b_; }
@@ -59,8 +65,8 @@ class Contact {
   const btVector3& p_W() const { return p_W_; }
   // Newton seconds of the step: normal and friction. B has the opposite.
   btVector3 impulse_on_a_W() const {
-    return vector_of(row_[0], 0) * normal_impulse_ + vector_of(row_[1], 0) * friction_impulse_[0] +
-           vector_of(row_[2], 0) * friction_impulse_[1];
+    return normal_W_ * normal_impulse_ + vector_of(tangents_W_, 0) * friction_impulse_[0] +
+           vector_of(tangents_W_, 1) * friction_impulse_[1];
   }
   bool pressed() const { return normal_impulse_ > 0; }
 
@@ -68,10 +74,24 @@ class Contact {
   // The state of A that a contact changes.
   struct Moved {
     TwoVectors& delta;
-    btScalar &belt_mps, &load_ns;
+    btScalar &arm_nms, &belt_ns, &load_ns;
+    btScalar arm_mobility, belt_mobility;
   };
-  Moved in_place(btScalar& none) const;  // `none` stands in for a belt's state where A has no belt
-  bool on_ground() const { return !body_b_ && !belt_b_; }
+  // One body's part in the three rows normal, along, across.
+  struct Rows {
+    TwoVectors row[3];  // row velocity for a unit velocity at C of the body, with what its arm's rate follows of it
+    TwoVectors response[3];  // velocity change at C for a unit impulse
+    btScalar lever = 0;      // of the normal about the arm's axis, m
+    Two levers{0, 0};        // of the tangents
+  };
+  static Rows rows_of(const ContactSide& side, const btVector3& p_W, const btVector3& normal,
+                      const TwoVectors& tangents);
+  void merge_rows();
+  struct Nothing {  // stands in for what A has not
+    btScalar arm_nms = 0, belt_ns = 0, load_ns = 0;
+  };
+  Moved in_place(Nothing& none) const;
+  bool on_ground() const { return !b_.body && !belt_b_; }
   template <bool kSomeShear>
   static btScalar solve_each(std::span<Contact> contacts);
   template <bool kOnGround, bool kSomeShear>
@@ -82,14 +102,9 @@ class Contact {
   Two coulomb_friction(Two slip, btScalar normal) const;
   Two sheared_friction(Two slip, btScalar normal) const;
 
-  SolverBody *body_a_, *body_b_;
+  ContactSide a_, b_;
   Belt *belt_a_, *belt_b_;
-  // Three rows: normal, along, across; the linear part in lane 0, the angular part in lane 1.
-  TwoVectors row_[3];       // Jacobian: row velocity for a unit velocity of A: axis, arm x axis
-  TwoVectors response_[3];  // velocity change of A for a unit impulse
-  // The same for B, but the linear part of response_b_ lacks B's inverse mass: apply() multiplies the sum of the three
-  // rows by it. Another order of these products would change the last digits of every result.
-  TwoVectors row_b_[3], response_b_[3];
+  Rows rows_a_, rows_b_;  // B's: unused if it is fixed
   btScalar inverse_mass_a_;
   // Friction quantities: along in lane 0, across in lane 1.
   btScalar normal_impulse_;
@@ -102,11 +117,11 @@ class Contact {
   Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu
   Two mu_, inverse_mu_;
   ShearStretch stretch_;
-  Two belt_gain_a_, belt_gain_b_;  // slip for a unit belt speed; 0 without a belt
-  Two belt_push_a_, belt_push_b_;  // belt speed for a unit friction impulse
+  Two gain_a_, gain_b_;  // slip for a unit belt speed, and push on the belt for a unit impulse; 0 without a belt
   btScalar* stored_impulse_[3];
   const Collider *collider_a_, *collider_b_;
-  btVector3 p_W_;
+  btVector3 p_W_, normal_W_;
+  TwoVectors tangents_W_;
   TouchingPart part_a_, part_b_;
 };
 

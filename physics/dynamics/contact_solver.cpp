@@ -6,11 +6,6 @@
 namespace kenaf::physics {
 namespace {
 
-// Tracks that once pulled against each other must not do so for ever: a belt that rolls brings unloaded rubber into
-// contact, and rubber creeps. After this distance or time, 1/e of an old friction impulse is left to start from.
-constexpr double kRenewal_m = 0.02;
-constexpr double kCreep_s = 0.5;
-
 const Surface& surface_of(const btCollisionObject& body, int child) {
   const auto& collider = *static_cast<const Collider*>(body.getUserPointer());
   const auto i = static_cast<std::size_t>(child);
@@ -22,6 +17,7 @@ const Surface& surface_of(const btCollisionObject& body, int child) {
 void ContactSolver::add_belt(Belt* belt, const btRigidBody* body) {
   belts_.push_back({belt, body});
   contacts_.reserve(kManyContacts * belts_.size());
+  contacts_anew_.reserve(kManyContacts * belts_.size());
   touching_.reserve(kManyContacts * belts_.size());
   touching_by_group_.make_room(kManyContacts * belts_.size());
   belt_ground_.make_room(kManyPairs * belts_.size());
@@ -39,39 +35,62 @@ void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
 
 void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
                           btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info) {
-  // Bodies, groups and rows; a row's impulse starts from the last step's.
-  bodies_.resize(static_cast<std::size_t>(bodies.size()));
-  for (int i = 0; i < bodies.size(); ++i) {
-    bodies_[static_cast<std::size_t>(i)] = to_solver(*bodies[i], info.m_timeStep);
-    bodies[i]->setCompanionId(i);
-  }
-  find_groups(dispatcher, joints);
-  make_joints(joints, info);
+  // Bodies, groups and contacts; an impulse starts from the last step's.
+  assemble(bodies, joints, info);
+  find_groups(dispatcher);
+  for (const auto& [belt, body] : belts_) start_step(*belt, info.m_timeStep);
   make_contacts(dispatcher, info.m_timeStep);
-  start_belts();
   for (Contact& contact : contacts_) contact.warm_start();
-  for (JointRows& joint : joints_) joint.warm_start();
 
-  // Each group by itself, until an iteration changes no velocity in it or the iterations are used up.
-  for (std::size_t group = 0; group < groups_.count(); ++group)
-    for (int i = 0; i < info.m_numIterations; ++i)
-      if (iterate(group, info.m_timeStep) <= info.m_leastSquaresResidualThreshold) break;
+  for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, dispatcher, info);
 
   // Impulses to where the next step finds them, velocities to Bullet.
-  for (Contact& contact : contacts_) contact.finish();
-  for (JointRows& joint : joints_) joint.finish();
-  for (const SolverBody& body : bodies_) write_back(body);
+  for (const Contact& contact : contacts_) contact.keep_impulses();
+  for (const auto& [belt, body] : belts_) finish_step(*belt);
+  for (const ArticulatedBody& body : bodies_) write_back(body);
 }
 
-SolverBody* ContactSolver::solver_body(const btCollisionObject& object) {
-  return object.isStaticOrKinematicObject() ? nullptr : &bodies_[static_cast<std::size_t>(object.getCompanionId())];
+void ContactSolver::assemble(btAlignedObjectArray<btRigidBody*>& bodies,
+                             const btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info) {
+  // Joints by the body that carries the arm.
+  const auto count = static_cast<std::size_t>(bodies.size());
+  for (int i = 0; i < bodies.size(); ++i) bodies[i]->setCompanionId(i);
+  joints_by_base_.begin();
+  for (int i = 0; i < joints.size(); ++i)
+    joints_by_base_.add(static_cast<std::size_t>(joints[i]->getRigidBodyA().getCompanionId()));
+  joints_by_base_.sort(count);
+  arms_.clear();
+  sides_.assign(count, {});
+  for (const std::size_t i : joints_by_base_.all()) {
+    Arm& arm = arms_.emplace_back();
+    arm.joint = static_cast<FlipperJoint*>(joints[static_cast<int>(i)]);
+    arm.body = &arm.joint->getRigidBodyB();
+  }
+  for (Arm& arm : arms_) sides_[static_cast<std::size_t>(arm.body->getCompanionId())].arm = &arm;
+
+  // A body that is no arm carries its arms. No pointer into bodies_ is taken before the last one is in.
+  bodies_.clear();
+  bodies_.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (sides_[i].arm) continue;
+    const std::size_t first = joints_by_base_.begin_of(i), end = joints_by_base_.end_of(i);
+    bodies_.push_back(to_solver(*bodies[static_cast<int>(i)], std::span(arms_).subspan(first, end - first),
+                                info.m_timeStep, 1 / info.m_timeStep * info.m_erp));
+    sides_[i].body = &bodies_.back();
+    for (std::size_t k = first; k < end; ++k)
+      sides_[static_cast<std::size_t>(arms_[k].body->getCompanionId())].body = &bodies_.back();
+  }
+}
+
+ContactSide ContactSolver::side_of(const btCollisionObject& object) const {
+  return object.isStaticOrKinematicObject() ? ContactSide{} : sides_[static_cast<std::size_t>(object.getCompanionId())];
 }
 
 std::size_t ContactSolver::group_of(const btCollisionObject& moving) const {
-  return groups_.of(static_cast<std::size_t>(moving.getCompanionId()));
+  return groups_.of(static_cast<std::size_t>(side_of(moving).body - bodies_.data()));
 }
 
-void ContactSolver::find_groups(btDispatcher& dispatcher, const btAlignedObjectArray<btTypedConstraint*>& joints) {
+void ContactSolver::find_groups(btDispatcher& dispatcher) {
   const std::vector<BeltPair*>& pairs = belt_ground_.pairs();
   const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
   const auto each_touching = [&](const auto& use) {  // (number, body, other body)
@@ -83,21 +102,20 @@ void ContactSolver::find_groups(btDispatcher& dispatcher, const btAlignedObjectA
       if (!pairs[p]->contacts.empty()) use(manifolds + p, *pairs[p]->body, *pairs[p]->ground);
   };
   const auto moves = [](const btCollisionObject& object) { return !object.isStaticOrKinematicObject(); };
-  const auto join = [&](const btCollisionObject& a, const btCollisionObject& b) {
-    if (moves(a) && moves(b))
-      groups_.join(static_cast<std::size_t>(a.getCompanionId()), static_cast<std::size_t>(b.getCompanionId()));
-  };
 
-  // A joint or a contact joins two moving bodies into one group.
+  // A contact joins two moving bodies into one group.
   groups_.begin(bodies_.size());
-  for (int i = 0; i < joints.size(); ++i) join(joints[i]->getRigidBodyA(), joints[i]->getRigidBodyB());
-  each_touching([&](std::size_t, const auto& a, const auto& b) { join(a, b); });
+  each_touching([&](std::size_t, const auto& a, const auto& b) {
+    if (!moves(a) || !moves(b)) return;
+    groups_.join(static_cast<std::size_t>(side_of(a).body - bodies_.data()),
+                 static_cast<std::size_t>(side_of(b).body - bodies_.data()));
+  });
   groups_.number();
 
-  // Joints, belts and touching pairs, sorted by group.
-  joints_by_group_.begin();
-  for (int i = 0; i < joints.size(); ++i) joints_by_group_.add(group_of(joints[i]->getRigidBodyA()));
-  joints_by_group_.sort(groups_.count());
+  // Bodies, belts and touching pairs, sorted by group.
+  bodies_by_group_.begin();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_by_group_.add(groups_.of(i));
+  bodies_by_group_.sort(groups_.count());
   belts_by_group_.begin();
   for (const BeltOfBody& of : belts_) belts_by_group_.add(group_of(*of.body));
   belts_by_group_.sort(groups_.count());
@@ -111,65 +129,95 @@ void ContactSolver::find_groups(btDispatcher& dispatcher, const btAlignedObjectA
   touching_by_group_.sort(groups_.count());
 }
 
-void ContactSolver::make_joints(const btAlignedObjectArray<btTypedConstraint*>& joints,
-                                const btContactSolverInfo& info) {
-  joints_.clear();
-  for (const std::size_t i : joints_by_group_.all()) {
-    btTypedConstraint& joint = *joints[static_cast<int>(i)];
-    joints_.emplace_back(static_cast<FlipperJoint&>(joint), *solver_body(joint.getRigidBodyA()),
-                         *solver_body(joint.getRigidBodyB()), info);
-  }
-}
-
 void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) {
-  // exp(-h (|u| / 20 mm + 1 / 0.5 s)) of the friction impulses is left to start from.
-  for (const auto& [belt, body] : belts_)
-    belt->warm_start_share = std::exp(-time_step * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
-
-  // Group by group, the contacts of its manifolds and belt pairs.
-  const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
   contacts_.clear();
   some_shear_ = false;
   contacts_end_.clear();
   for (std::size_t group = 0; group < groups_.count(); ++group) {
-    for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
-      const std::size_t number = touching_[touching_by_group_.all()[i]];
-      if (number < manifolds)
-        add_manifold(*dispatcher.getManifoldByIndexInternal(static_cast<int>(number)), time_step);
-      else
-        add_belt_pair(*belt_ground_.pairs()[number - manifolds], time_step);
-    }
+    add_contacts(group, dispatcher, time_step, contacts_);
     contacts_end_.push_back(contacts_.size());
   }
 }
 
-// Warm start of the belts' own impulses: motor and running gear.
-void ContactSolver::start_belts() {
-  for (const auto& [belt, body] : belts_) {
-    belt->motor_impulse_ns =
-        std::clamp(belt->warm_start_share * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
-    belt->friction_impulse_ns *= belt->warm_start_share;
-    belt->viscous_impulse_ns *= belt->warm_start_share;
-    belt->speed_mps +=
-        (belt->motor_impulse_ns + belt->friction_impulse_ns + belt->viscous_impulse_ns) / belt->moving_mass_kg;
-    belt->load_ns = 0;
+void ContactSolver::add_contacts(std::size_t group, btDispatcher& dispatcher, btScalar time_step,
+                                 std::vector<Contact>& to) {
+  const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
+  for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
+    const std::size_t number = touching_[touching_by_group_.all()[i]];
+    if (number < manifolds)
+      add_manifold(*dispatcher.getManifoldByIndexInternal(static_cast<int>(number)), time_step, to);
+    else
+      add_belt_pair(*belt_ground_.pairs()[number - manifolds], time_step, to);
   }
 }
 
-btScalar ContactSolver::iterate(std::size_t group, btScalar time_step) {
-  btScalar residual = 0;
-  for (std::size_t i = joints_by_group_.begin_of(group); i < joints_by_group_.end_of(group); ++i)
-    residual = btMax(residual, joints_[i].solve());
-  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
-    residual = std::max(residual, solve_running_gear(*belts_[belts_by_group_.all()[i]].belt, time_step));
+std::span<Contact> ContactSolver::contacts_of(std::size_t group) {
   const std::size_t first = group == 0 ? 0 : contacts_end_[group - 1];
-  return std::max(residual,
-                  Contact::solve(std::span(contacts_).subspan(first, contacts_end_[group] - first), some_shear_));
+  return std::span(contacts_).subspan(first, contacts_end_[group] - first);
 }
 
-void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step) {
+// Until an iteration changes no velocity of the group or the iterations are used up. At which limits motors and servos
+// are is looked at by the impulses to start from, then on the way and at the end; where it is not what was assumed, the
+// group begins anew with the impulses that it has.
+void ContactSolver::solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info) {
+  constexpr int kIterationsToLook = 3;
+  constexpr int kMostTimesAnew = 8;
+  solve_friction_of_belts(group);
+  if (settle_motors(group)) make_anew(group, dispatcher, info.m_timeStep);
+  int times_anew = 0;
+  for (int i = 1; i <= info.m_numIterations; ++i) {
+    const bool solved = iterate(group) <= info.m_leastSquaresResidualThreshold;
+    const bool look = solved || i == info.m_numIterations || i % kIterationsToLook == 0;
+    if (look && settle_motors(group) && times_anew < kMostTimesAnew) {
+      make_anew(group, dispatcher, info.m_timeStep);
+      ++times_anew;
+      i = 0;
+    } else if (solved) {
+      break;
+    }
+  }
+}
+
+btScalar ContactSolver::solve_friction_of_belts(std::size_t group) {
+  btScalar residual = 0;
+  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
+    residual = std::max(residual, solve_friction(*belts_[belts_by_group_.all()[i]].belt));
+  return residual;
+}
+
+btScalar ContactSolver::iterate(std::size_t group) {
+  const btScalar residual = solve_friction_of_belts(group);
+  return std::max(residual, Contact::solve(contacts_of(group), some_shear_));
+}
+
+bool ContactSolver::settle_motors(std::size_t group) {
+  bool changed = false;
+  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
+    changed |= settle_motor(*belts_[belts_by_group_.all()[i]].belt);
+  for (std::size_t i = bodies_by_group_.begin_of(group); i < bodies_by_group_.end_of(group); ++i)
+    changed |= settle_servos(bodies_[bodies_by_group_.all()[i]]);
+  return changed;
+}
+
+void ContactSolver::make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step) {
+  const std::span<Contact> contacts = contacts_of(group);
+  for (const Contact& contact : contacts) contact.keep_impulses();
+  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i) {
+    Belt& belt = *belts_[belts_by_group_.all()[i]].belt;
+    belt.warm_start_share = 1;  // nothing fades a second time
+    begin_anew(belt);
+  }
+  for (std::size_t i = bodies_by_group_.begin_of(group); i < bodies_by_group_.end_of(group); ++i)
+    begin_anew(bodies_[bodies_by_group_.all()[i]]);
+  contacts_anew_.clear();
+  add_contacts(group, dispatcher, time_step, contacts_anew_);
+  std::ranges::copy(contacts_anew_, contacts.begin());
+  for (Contact& contact : contacts) contact.warm_start();
+}
+
+void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to) {
   const btCollisionObject *body0 = manifold.getBody0(), *body1 = manifold.getBody1();
-  SolverBody *solver0 = solver_body(*body0), *solver1 = solver_body(*body1);
+  const ContactSide side0 = side_of(*body0), side1 = side_of(*body1);
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     btManifoldPoint& point = manifold.getContactPoint(i);
     const Surface& surface0 = surface_of(*body0, point.m_index0);
@@ -179,22 +227,22 @@ void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_s
     // Bullet keeps these impulses with a point that it finds again, but no directions: they are along this contact's
     // own axes.
     const Touch touch{p_W,
-                      solver0 ? point.m_normalWorldOnB : -point.m_normalWorldOnB,
+                      side0.body ? point.m_normalWorldOnB : -point.m_normalWorldOnB,
                       point.getDistance(),
                       1,
                       false,
                       {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1, &point.m_appliedImpulseLateral2}};
-    const Meeting meeting = solver0 ? Meeting(*body0, *body1, solver0, solver1, surface0, surface1)
-                                    : Meeting(*body1, *body0, solver1, nullptr, surface1, surface0);
-    contacts_.emplace_back(meeting, touch, settings_, time_step);
+    const Meeting meeting = side0.body ? Meeting(*body0, *body1, side0, side1, surface0, surface1)
+                                       : Meeting(*body1, *body0, side1, {}, surface1, surface0);
+    to.emplace_back(meeting, touch, settings_, time_step);
   }
 }
 
-void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
+void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step, std::vector<Contact>& to) {
   const Shearing shearing = shearing_of(*pair.belt, belt_ground_.pairs());
   some_shear_ |= shearing.rate > 0;
-  const Meeting meeting(*pair.body, *pair.ground, solver_body(*pair.body), solver_body(*pair.ground),
-                        pair.belt->surface, surface_of(*pair.ground, 0));
+  const Meeting meeting(*pair.body, *pair.ground, side_of(*pair.body), side_of(*pair.ground), pair.belt->surface,
+                        surface_of(*pair.ground, 0));
   for (BeltContact& contact : pair.contacts) {
     const BeltTouch& at = contact.touch;
     const Touch touch{pair.X_WT * at.p_T,
@@ -204,41 +252,8 @@ void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
                       at.holds_lugs,
                       {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]},
                       shearing.rate > 0 ? stretch_of(*pair.belt, at, shearing) : ShearStretch{}};
-    contacts_.emplace_back(meeting, touch, settings_, time_step);
+    to.emplace_back(meeting, touch, settings_, time_step);
   }
-}
-
-btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
-  if (std::isinf(belt.moving_mass_kg)) return 0;
-  btScalar changed = 0;
-  const auto push = [&](double& impulse_ns, double wanted_ns, double min_ns, double max_ns) {
-    const double before = impulse_ns;
-    impulse_ns = std::clamp(wanted_ns, min_ns, max_ns);
-    const double change_mps = (impulse_ns - before) / belt.moving_mass_kg;
-    belt.speed_mps += change_mps;
-    changed = std::max(changed, change_mps * change_mps);
-  };
-  const double m = belt.moving_mass_kg;
-
-  // Motor: speed = target - droop * impulse, with both after a change c of the impulse: u + c / m = target - droop
-  // (p + c), so c = (target - u - droop p) m / (1 + droop m). Without droop the speed becomes the target.
-  const double short_mps = belt.target_mps - belt.speed_mps - belt.droop_mpspns * belt.motor_impulse_ns;
-  push(belt.motor_impulse_ns, belt.motor_impulse_ns + short_mps * m / (1 + belt.droop_mpspns * m), belt.min_impulse_ns,
-       belt.max_impulse_ns);
-
-  // Viscous friction, implicit: p = -d u with u = u_free + p / m after it, so p = -u_free / (1 / d + 1 / m).
-  if (const double damping_ns = belt.viscous_nspm * time_step; damping_ns > 0) {
-    const double free_mps = belt.speed_mps - belt.viscous_impulse_ns / m;
-    push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
-  }
-
-  // Dry and rolling friction: the impulse that stops the belt, within its limit. With a limit of 0 too if there is an
-  // impulse, of the warm start or of an earlier iteration: that one has to go. The load is a sum of changes, which
-  // rounding may leave below 0.
-  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * std::max(belt.load_ns, 0.0);
-      dry_ns > 0 || belt.friction_impulse_ns != 0)
-    push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);
-  return changed;
 }
 
 }  // namespace kenaf::physics

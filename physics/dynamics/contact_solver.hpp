@@ -1,16 +1,16 @@
-// A sequential impulse solver like Bullet's, with our own contacts: belts that run over surfaces, friction that does
-// not depend on axes, and slightly compliant ground. docs/physics.md has the equations and why they are so.
+// Sequential impulses over the contacts of bodies whose hinges are eliminated (articulated_body.hpp): belts that run
+// over surfaces, friction that does not depend on axes, and slightly compliant ground. docs/physics.md has the
+// equations and why they are so.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "physics/dynamics/articulated_body.hpp"
 #include "physics/dynamics/belt_ground.hpp"
 #include "physics/dynamics/body_groups.hpp"
 #include "physics/dynamics/bullet.hpp"
 #include "physics/dynamics/contact.hpp"
-#include "physics/dynamics/joint_rows.hpp"
-#include "physics/dynamics/solver_body.hpp"
 #include "physics/dynamics/surface.hpp"
 
 namespace kenaf::physics {
@@ -27,8 +27,9 @@ class ContactSolver {
   void remove_belt(Belt* belt);
   // Removes the contacts of an object that leaves its place or the world from contacts().
   void forget_contacts_of(const btCollisionObject& object);
-  // Solves one step's impulses and writes them back as velocities. Each of `joints` is a FlipperJoint. Groups of bodies
-  // are solved independently; each stops when nothing changes in it any more.
+  // Solves one step's impulses and writes them back as velocities. Each of `joints` is a FlipperJoint, from a base to
+  // an arm that has no other joint. Groups of bodies are solved independently; each stops when nothing changes in it
+  // any more.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
              btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
   // The contacts of the last step.
@@ -45,30 +46,39 @@ class ContactSolver {
     const btRigidBody* body;
   };
 
-  SolverBody* solver_body(const btCollisionObject& object);  // null if it is fixed
+  // Fills bodies_, arms_ and sides_.
+  void assemble(btAlignedObjectArray<btRigidBody*>& bodies, const btAlignedObjectArray<btTypedConstraint*>& joints,
+                const btContactSolverInfo& info);
+  ContactSide side_of(const btCollisionObject& object) const;
   std::size_t group_of(const btCollisionObject& moving) const;
-  // Fills groups_ and the lists of joints, belts and touching pairs by group.
-  void find_groups(btDispatcher& dispatcher, const btAlignedObjectArray<btTypedConstraint*>& joints);
-  void make_joints(const btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
+  // Fills groups_ and the lists of bodies, belts and touching pairs by group.
+  void find_groups(btDispatcher& dispatcher);
   void make_contacts(btDispatcher& dispatcher, btScalar time_step);
-  void start_belts();
-  btScalar iterate(std::size_t group, btScalar time_step);  // returns the largest squared velocity change
-  void add_manifold(btPersistentManifold& manifold, btScalar time_step);
-  void add_belt_pair(BeltPair& pair, btScalar time_step);
-  static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // returns the largest squared speed change
+  void solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info);
+  btScalar solve_friction_of_belts(std::size_t group);
+  btScalar iterate(std::size_t group);    // returns the largest squared velocity change
+  bool settle_motors(std::size_t group);  // of belts, and servos
+  // Bodies, belts and contacts of the group for motors at other limits, with the contacts' impulses as they are.
+  void make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step);
+  std::span<Contact> contacts_of(std::size_t group);
+  void add_contacts(std::size_t group, btDispatcher& dispatcher, btScalar time_step, std::vector<Contact>& to);
+  void add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to);
+  void add_belt_pair(BeltPair& pair, btScalar time_step, std::vector<Contact>& to);
 
   ContactSettings settings_;
   BeltGround& belt_ground_;
-  std::vector<SolverBody> bodies_;
   std::vector<BeltOfBody> belts_;
-  BodyGroups groups_;
-  // Indices into Bullet's list of joints, into belts_, and into touching_.
-  PlacesByGroup joints_by_group_, belts_by_group_, touching_by_group_;
+  std::vector<ArticulatedBody> bodies_;
+  std::vector<Arm> arms_;           // body by body
+  PlacesByGroup joints_by_base_;    // indices into Bullet's list of joints
+  std::vector<ContactSide> sides_;  // of each of Bullet's bodies
+  BodyGroups groups_;               // of bodies_
+  // Indices into bodies_, into belts_, and into touching_.
+  PlacesByGroup bodies_by_group_, belts_by_group_, touching_by_group_;
   std::vector<std::size_t>
       touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
   // Group by group.
-  std::vector<JointRows> joints_;
-  std::vector<Contact> contacts_;
+  std::vector<Contact> contacts_, contacts_anew_;
   bool some_shear_ = false;                // of contacts_
   std::vector<std::size_t> contacts_end_;  // of each group
 };

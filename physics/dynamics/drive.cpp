@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "physics/dynamics/battery.hpp"
 
@@ -25,10 +24,8 @@ TrackDrive::TrackDrive(robot::Track side, const TrackDriveDescription& drive, co
 
 void TrackDrive::prescribe(Belt& belt, double speed_mps) {
   turn_at(speed_mps);
-  belt.moving_mass_kg = std::numeric_limits<double>::infinity();
-  belt.speed_mps = speed_mps;
-  belt.min_impulse_ns = belt.max_impulse_ns = 0;  // the solver computes the impulse that the speed needs
-  belt.friction_impulse_ns = belt.viscous_impulse_ns = 0;
+  belt.prescribed = true;
+  belt.speed_mps = belt.motor.target = speed_mps;
 }
 
 void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s) {
@@ -46,10 +43,11 @@ void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_sh
   const double braking_n = drive_.max_force_n * voltage_share;
   const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
   belt.moving_mass_kg = drive_.moving_mass_kg;
-  belt.target_mps = reference_mps_;
-  belt.droop_mpspns = droop_mpspn_ / time_step_s;
-  belt.max_impulse_ns = (u > 0 ? driving_n : braking_n) * time_step_s;
-  belt.min_impulse_ns = -(u < 0 ? driving_n : braking_n) * time_step_s;
+  belt.prescribed = false;
+  belt.motor.target = reference_mps_;
+  belt.motor.softness = droop_mpspn_ / time_step_s;
+  belt.motor.high = (u > 0 ? driving_n : braking_n) * time_step_s;
+  belt.motor.low = -(u < 0 ? driving_n : braking_n) * time_step_s;
   belt.dry_friction_ns = dry_friction_n_ * time_step_s;
   belt.viscous_nspm = viscous_nspm_;
 }

@@ -44,7 +44,8 @@ void FlipperJoint::restart(double angle_rad) {
 
 void FlipperJoint::come_to_rest() {
   servo_radps_ = 0;
-  row_impulse = {};
+  servo_impulse = 0;
+  servo.limit = LimitedDrive::Limit::none;
 }
 
 double FlipperJoint::speed_radps() const {
@@ -52,9 +53,9 @@ double FlipperJoint::speed_radps() const {
 }
 
 void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescription& flipper,
-                         const FlipperServoDescription& servo, double time_step_s) {
+                         const FlipperServoDescription& motor, double time_step_s) {
   // Speed and torque limit by mode.
-  double torque = servo.max_torque_nm;
+  double torque = motor.max_torque_nm;
   double speed = 0;
   const double at = servo_rad();
   if (command.mode != robot::JointMode::angle) followed_rad_ = at;
@@ -65,23 +66,23 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
         followed_rad_ -= std::expm1(-time_step_s / coupling_.lag_s) * (target - followed_rad_);
         target = followed_rad_;
       }
-      speed = std::clamp(kServoGain_per_s * (target - at), -servo.max_speed_radps, servo.max_speed_radps);
+      speed = std::clamp(kServoGain_per_s * (target - at), -motor.max_speed_radps, motor.max_speed_radps);
       break;
     }
     case robot::JointMode::speed:
-      speed = std::clamp(command.value, -servo.max_speed_radps, servo.max_speed_radps);
+      speed = std::clamp(command.value, -motor.max_speed_radps, motor.max_speed_radps);
       break;
     case robot::JointMode::torque:  // runs freely up to the servo's speed
-      torque = std::min(std::abs(command.value), servo.max_torque_nm);
-      speed = std::copysign(servo.max_speed_radps, command.value);
+      torque = std::min(std::abs(command.value), motor.max_torque_nm);
+      speed = std::copysign(motor.max_speed_radps, command.value);
       break;
     case robot::JointMode::brake:
     case robot::JointMode::keep:  // the command channel lets none pass
       break;
   }
   servo_most_nm_ = torque;
-  min_impulse_ = -torque * time_step_s;
-  max_impulse_ = torque * time_step_s;
+  servo.low = -torque * time_step_s;
+  servo.high = torque * time_step_s;
 
   // Never past a limit within the next step; a load may press it past, then the stop pushes back.
   speed = std::clamp(speed, std::min((flipper.min_angle_rad - at) / time_step_s, 0.0),
@@ -90,30 +91,30 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
 
   // Beyond a limit the stop acts, which is at the arm; otherwise a soft coupling has set its own row already.
   const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
-  if (to_max < 0 || to_min > 0) softness_ = 0;  // the stop is rigid
+  if (to_max < 0 || to_min > 0) servo.softness = 0;  // the stop is rigid
   if (to_max < 0) {
     speed = std::min(speed, kEndStopGain_per_s * to_max);
-    min_impulse_ = -kEndStopTorque_nm * time_step_s;
+    servo.low = -kEndStopTorque_nm * time_step_s;
   } else if (to_min > 0) {
     speed = std::max(speed, kEndStopGain_per_s * to_min);
-    max_impulse_ = kEndStopTorque_nm * time_step_s;
-  } else if (softness_ > 0) {
+    servo.high = kEndStopTorque_nm * time_step_s;
+  } else if (servo.softness > 0) {
     return;
   }
-  target_radps_ = speed;
+  servo.target = speed;
 }
 
 void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
   constexpr double kFastest_radps = 10;  // chosen: an arm that starts elsewhere gets there without a shock
   const double at = servo_rad();
-  target_radps_ = std::clamp(robot::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
+  servo.target = std::clamp(robot::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
   servo_most_nm_ = kAnyTorque_nm;
-  max_impulse_ = kAnyTorque_nm * time_step_s;
-  min_impulse_ = -max_impulse_;
-  softness_ = 0;
-  followed_rad_ = at + target_radps_ * time_step_s;
-  if (!coupling_.rigid()) push_through(target_radps_, kAnyTorque_nm, time_step_s);
+  servo.high = kAnyTorque_nm * time_step_s;
+  servo.low = -servo.high;
+  servo.softness = 0;
+  followed_rad_ = at + servo.target * time_step_s;
+  if (!coupling_.rigid()) push_through(servo.target, kAnyTorque_nm, time_step_s);
 }
 
 // Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at
@@ -127,43 +128,16 @@ void FlipperJoint::push_through(double servo_radps, double torque_nm, double tim
   const double ahead = servo_rad_ - angle_rad_;
   const double stiffness = 1 / give;
   const double step_stiffness = stiffness * (time_step_s + kSpringDamping_s);
-  softness_ = 1 / (time_step_s * step_stiffness);
-  target_radps_ = servo_radps + stiffness * (ahead - std::copysign(coupling_.play_rad / 2, ahead)) / step_stiffness;
-  if (coupling_.play_rad > 0) (ahead < 0 ? max_impulse_ : min_impulse_) = 0;
+  servo.softness = 1 / (time_step_s * step_stiffness);
+  servo.target = servo_radps + stiffness * (ahead - std::copysign(coupling_.play_rad / 2, ahead)) / step_stiffness;
+  if (coupling_.play_rad > 0) (ahead < 0 ? servo.high : servo.low) = 0;
 }
 
-void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) const {
+FlipperJoint::Hinge FlipperJoint::hinge() const {
   const btTransform X_WJa = m_rbA.getCenterOfMassTransform() * X_AJ_;
   const btTransform X_WJb = m_rbB.getCenterOfMassTransform() * X_BJ_;
-  const btVector3 r_a = X_WJa.getOrigin() - m_rbA.getCenterOfMassPosition();
-  const btVector3 r_b = X_WJb.getOrigin() - m_rbB.getCenterOfMassPosition();
-  const btVector3 apart = X_WJb.getOrigin() - X_WJa.getOrigin();
-  // Three rows hold the pivots together: v_A + w_A x r_A = v_B + w_B x r_B along each axis of W.
-  for (int i = 0; i < 3; ++i) {
-    Row& row = out[static_cast<std::size_t>(i)];
-    btVector3 axis(0, 0, 0);
-    axis[i] = 1;
-    row.angular_a = r_a.cross(axis);
-    row.angular_b = -r_b.cross(axis);
-    row.velocity = correction_per_s * apart[i];
-  }
-  // Two keep the axes parallel: no relative turn about the joint's x and z.
-  const btVector3 axis_a = X_WJa.getBasis().getColumn(1);
-  const btVector3 tilt = axis_a.cross(X_WJb.getBasis().getColumn(1));
-  for (const std::size_t i : {3u, 4u}) {
-    const btVector3 p = X_WJa.getBasis().getColumn(i == 3 ? 0 : 2);
-    out[i].angular_a = p;
-    out[i].angular_b = -p;
-    out[i].velocity = correction_per_s * tilt.dot(p);
-  }
-  // The last is the servo: B turns relative to A about -y of the joint.
-  Row& servo = out[5];
-  servo.angular_a = axis_a;
-  servo.angular_b = -axis_a;
-  servo.velocity = target_radps_;
-  servo.low = min_impulse_;
-  servo.high = max_impulse_;
-  servo.softness = softness_;
+  const btVector3 y_a = X_WJa.getBasis().getColumn(1), y_b = X_WJb.getBasis().getColumn(1);
+  return {X_WJa.getOrigin(), -y_a, X_WJb.getOrigin() - X_WJa.getOrigin(), y_a.cross(y_b)};
 }
 
 }  // namespace kenaf::physics

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 
 #include "physics/dynamics/bullet.hpp"
+#include "physics/dynamics/limited_drive.hpp"
 #include "physics/robot_description.hpp"
 #include "robot/command.hpp"
 
@@ -39,7 +39,7 @@ class FlipperJoint : public btTypedConstraint {
   void come_to_rest();
   // Sets the servo for the next step.
   void drive(const robot::JointCommand& command, const FlipperDescription& flipper,
-             const FlipperServoDescription& servo, double time_step_s);
+             const FlipperServoDescription& motor, double time_step_s);
   // Instead of drive(): at the end of the next step the servo has this direction, regardless of its limits; it turns at
   // most at 10 rad/s. A rigid arm is there too; otherwise it follows through play and compliance.
   void prescribe(double angle_rad, double time_step_s);
@@ -48,22 +48,21 @@ class FlipperJoint : public btTypedConstraint {
   // On the servo's side of play and compliance, where its encoder sits.
   double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
   double speed_radps() const;
-  double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
+  double torque_nm(double time_step_s) const { return servo_impulse / time_step_s; }  // + lifts the tip
   // The servo's part of it, without the mechanical stop, which takes no current.
   double servo_nm(double time_step_s) const {
     return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_);
   }
 
-  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, enforced by an impulse between `low` and
-  // `high`. The first three rows also contain v_A - v_B along x, y, z of W.
-  struct Row {
-    btVector3 angular_a, angular_b;
-    btScalar velocity, low = -SIMD_INFINITY, high = SIMD_INFINITY;
-    btScalar softness = 0;  // compliance, in rad/s for an impulse of 1 N m s
+  // Where the hinge is, and how far its two sides have drifted: the arm's pivot ahead of the body's, and the turn that
+  // would align the body's axis with the arm's. In W; a positive angle turns the arm about axis_W.
+  struct Hinge {
+    btVector3 pivot_W, axis_W, apart_W, tilt_W;
   };
-  static constexpr std::size_t kRows = 6;
-  // `correction_per_s`: rate at which position errors are removed.
-  void rows(btScalar correction_per_s, std::array<Row, kRows>& out) const;
+  Hinge hinge() const;
+
+  // What the servo does in the next step. The solver leaves in it the limit that it was at.
+  LimitedDrive servo;
 
   // No rows for Bullet's own solver.
   void getInfo1(btConstraintInfo1* info) override { info->m_numConstraintRows = info->nub = 0; }
@@ -71,7 +70,7 @@ class FlipperJoint : public btTypedConstraint {
   void setParam(int, btScalar, int) override {}
   btScalar getParam(int, int) const override { return 0; }
 
-  std::array<double, kRows> row_impulse{};  // of the last step; the servo's is the last one
+  double servo_impulse = 0;  // N m s, of the last step, set by the solver; + lifts the tip
 
  private:
   void push_through(double servo_radps, double torque_nm, double time_step_s);
@@ -80,7 +79,6 @@ class FlipperJoint : public btTypedConstraint {
 
   btTransform X_AJ_, X_BJ_;
   double angle_rad_ = 0;
-  double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
   ServoCoupling coupling_;
   double servo_most_nm_ = 0;
   double followed_rad_ = 0;                                      // the commanded angle after the lag

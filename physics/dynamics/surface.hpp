@@ -5,31 +5,9 @@
 #include <vector>
 
 #include "physics/contact_point.hpp"
+#include "physics/dynamics/belt.hpp"
 
 namespace kenaf::physics {
-
-// A track's belt: one degree of freedom in addition to the rigid bodies. Its speed is a state of the simulation, solved
-// together with the contacts: the motor drives it, the friction on all the surfaces it runs over brakes it.
-struct Belt {
-  // set before a step
-  double moving_mass_kg = 1;      // infinite: a prescribed speed, whatever pushes on it
-  double target_mps = 0;          // the motor's set speed
-  double droop_mpspns = 0;        // shortfall from it for each newton second that the motor gives within a step
-  double min_impulse_ns = 0;      // limits of the motor within a step, <= 0
-  double max_impulse_ns = 0;      // >= 0
-  double dry_friction_ns = 0;     // of the running gear, within a step
-  double viscous_nspm = 0;        // of the running gear
-  double rolling_resistance = 0;  // friction force for a unit of normal force on the belt
-  double slip_spm = 0;            // the surface moves with speed (1 - slip |speed|)
-  // state
-  double speed_mps = 0;  // of the surface relative to the body, + drives the robot forward
-  // results of a step
-  double motor_impulse_ns = 0;
-  double friction_impulse_ns = 0;  // dry and rolling, of the running gear
-  double viscous_impulse_ns = 0;
-  double load_ns = 0;           // normal impulse on it
-  double warm_start_share = 1;  // of the last step's impulses that the next step starts from, normal ones apart
-};
 
 struct Surface {
   double friction_along = 1;

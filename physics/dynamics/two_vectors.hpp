@@ -30,6 +30,10 @@ inline TwoMatrices side_by_side(const btMatrix3x3& a, const btMatrix3x3& b) {
   return {{side_by_side(a[0], b[0]), side_by_side(a[1], b[1]), side_by_side(a[2], b[2])}};
 }
 
+inline btScalar sum_of_lanes(const Two& parts) {
+  return parts[0] + parts[1];
+}
+
 // In the order of btVector3 and btMatrix3x3.
 inline Two dot(const TwoVectors& a, const TwoVectors& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
