@@ -20,19 +20,11 @@
 #include <set>
 #include <vector>
 
+#include "physics/files/xml_line.hpp"
 #include "physics/robot_description.hpp"
 
 namespace kenaf::physics {
 namespace {
-
-// Expat 2.9 counts lines in 64 bits, and calls the function that it had before obsolete.
-std::uint64_t line_of(XML_Parser parser) {
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
-  return XML_GetCurrentLineNumber64(parser);
-#else
-  return XML_GetCurrentLineNumber(parser);
-#endif
-}
 
 std::string extension_of(MeshFormat format) {
   return format == MeshFormat::stl ? "stl" : format == MeshFormat::obj ? "obj" : "dae";

@@ -7,13 +7,15 @@
 #include <string>
 #include <string_view>
 
+#include "physics/files/xml_line.hpp"
+
 namespace kenaf::test {
 
 // What is wrong with it, with its line; empty: nothing.
 inline std::string fault_of_xml(std::string_view text) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate("UTF-8"), &XML_ParserFree);
   if (XML_Parse(parser.get(), text.data(), static_cast<int>(text.size()), 1) == XML_STATUS_OK) return {};
-  return "line " + std::to_string(XML_GetCurrentLineNumber(parser.get())) + ": " +
+  return "line " + std::to_string(physics::line_of(parser.get())) + ": " +
          XML_ErrorString(XML_GetErrorCode(parser.get()));
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <memory>
 
+#include "physics/files/xml_line.hpp"
+
 namespace kenaf::describe {
 namespace {
 
@@ -39,7 +41,7 @@ void on_start(void* user, const XML_Char* name, const XML_Char** attributes) {
     return builder.refuse(fmt::format("there are more than {} elements", kMostElements));
   XmlNode node;
   node.name = name;
-  node.line = XML_GetCurrentLineNumber(builder.parser);
+  node.line = physics::line_of(builder.parser);
   for (; *attributes; attributes += 2) node.attributes.emplace(attributes[0], attributes[1]);
   if (node.attributes.size() > kMostAttributes)
     return builder.refuse(fmt::format("an element has more than {} attributes", kMostAttributes));
@@ -117,7 +119,7 @@ XmlNode parse_xml(std::string_view text, const std::string& file) {
   const std::string why = builder.refusal.empty() ? fmt::format("is not well-formed XML: {}",
                                                                 XML_ErrorString(XML_GetErrorCode(parser.get())))
                                                   : builder.refusal;
-  throw DescriptionError(fmt::format("{}:{}: {}", file, XML_GetCurrentLineNumber(parser.get()), why));
+  throw DescriptionError(fmt::format("{}:{}: {}", file, physics::line_of(parser.get()), why));
 }
 
 std::optional<std::vector<double>> numbers_in(std::string_view text) {

@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
   // Options, then the picture; both kinds of errors end with the same status.
   Options options;
   CLI::App app{"Draws a run of the robot from above and, if it climbs, from the side.", "kenaf-draw"};
-  app.add_option("run", options.run, "the run, a CSV file in the kenaf-runs/1 format")
+  app.add_option("file", options.run, "the run, a CSV file in the kenaf-runs/1 format")
       ->required()
       ->type_name("RUN.csv");
   app.add_option("--run", options.other_runs, "a run to compare it with; may be given several times")
