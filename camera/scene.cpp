@@ -30,6 +30,14 @@ Owned<RTCDevice> make_device() {
   return device;
 }
 
+// A ray along an edge that two faces share, or two boxes side by side, meets one of them. Without the flag it may pass
+// between them, by the processor and the version of Embree.
+Owned<RTCScene> watertight_scene(RTCDevice device, RTCSceneFlags more = RTC_SCENE_FLAG_NONE) {
+  Owned<RTCScene> scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | more);
+  return scene;
+}
+
 void commit(RTCDevice device, RTCScene scene) {
   rtcCommitScene(scene);
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
@@ -129,7 +137,7 @@ struct Scene::Implementation {
 
   void build_fixed() {
     // All fixed boxes are one geometry. Faces are numbered: planes, boxes, then mesh after mesh.
-    fixed.reset(rtcNewScene(device.get()));
+    fixed = watertight_scene(device.get());
     rtcSetSceneBuildQuality(fixed.get(), RTC_BUILD_QUALITY_MEDIUM);
     fixed_surface = {};
     for (const BoxSnapshot& box : fixed_boxes) add_box(fixed_surface, box.size_m, box.X_WBox, Material::fixed_box);
@@ -151,7 +159,7 @@ struct Scene::Implementation {
 
   void add_part(Surface surface) {
     Part part;
-    part.scene.reset(rtcNewScene(device.get()));
+    part.scene = watertight_scene(device.get());
     attach_triangles(device.get(), part.scene.get(), 0, surface.vertices, surface.triangles);
     commit(device.get(), part.scene.get());
     part.instance.reset(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
@@ -174,8 +182,7 @@ struct Scene::Implementation {
     robots.clear();
     loose_boxes.clear();
     loose_sizes.clear();
-    moving.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(moving.get(), RTC_SCENE_FLAG_DYNAMIC);
+    moving = watertight_scene(device.get(), RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(moving.get(), RTC_BUILD_QUALITY_LOW);
 
     // Loose boxes, remembered to see whether a later snapshot has the same.

@@ -167,7 +167,18 @@ endfunction()
 # kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ALONE]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
 # [long]), and starts those of the highest cost first. The cases of files whose names begin with hostile also have the
-# label hostile.
+# label hostile, by their tag [hostile].
+function(kenaf_check_hostile source)
+  file(READ ${source} text)
+  string(REGEX MATCHALL "TEST_CASE\\(" cases "${text}")
+  string(REGEX MATCHALL "\\[hostile\\]" tags "${text}")
+  list(LENGTH cases cases)
+  list(LENGTH tags tags)
+  if(NOT cases EQUAL tags)
+    message(FATAL_ERROR "${CMAKE_CURRENT_SOURCE_DIR}/${source}: ${cases} test cases, ${tags} tags [hostile]; each needs one")
+  endif()
+endfunction()
+
 function(kenaf_test name)
   cmake_parse_arguments(TEST "ALONE" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_COST)
@@ -192,38 +203,34 @@ function(kenaf_test name)
     if(Catch2_VERSION VERSION_GREATER_EQUAL 3)
       set(none_fails "")
     endif()
-    set(hostile "")  # the tags of such files, as Catch2 writes them: each or any of them
-    set(not_hostile "")
-    set(all_hostile TRUE)
+    # a program may have both hostile test cases and others: each get labels of their own
+    set(hostile FALSE)
+    set(others FALSE)
     foreach(source ${TEST_SOURCES})
-      get_filename_component(file ${source} NAME_WE)
-      if(file MATCHES "^hostile.*_test$")
-        list(APPEND hostile "[#${file}]")
-        string(APPEND not_hostile "~[#${file}]")
-      elseif(file MATCHES "_test$")
-        set(all_hostile FALSE)
+      if(source MATCHES "hostile[^/]*_test\\.cpp$")
+        set(hostile TRUE)
+        kenaf_check_hostile(${source})
+      elseif(source MATCHES "_test\\.cpp$")
+        set(others TRUE)
       endif()
     endforeach()
-    list(JOIN hostile "," hostile)
     # Catch2's functions take lists apart four times on the way to the test's properties
     set(several "\\\\\\\\;")
     list(JOIN TEST_LABELS "${several}" labels)
     if(hostile)
       catch_discover_tests(${name}
-        TEST_SPEC --filenames-as-tags "${hostile}"
+        TEST_SPEC "[hostile]"
         ${none_fails}
         TEST_PREFIX "${name}: "
         PROPERTIES LABELS "${labels}${several}hostile" COST ${TEST_COST} ${alone})
-      set(not_hostile TEST_SPEC --filenames-as-tags "${not_hostile}")
     endif()
-    if(hostile AND all_hostile)
-      return()
+    if(others)
+      catch_discover_tests(${name}
+        TEST_SPEC "~[hostile]"
+        ${none_fails}
+        TEST_PREFIX "${name}: "
+        PROPERTIES LABELS "${labels}" COST ${TEST_COST} ${alone})
     endif()
-    catch_discover_tests(${name}
-      ${not_hostile}
-      ${none_fails}
-      TEST_PREFIX "${name}: "
-      PROPERTIES LABELS "${labels}" COST ${TEST_COST} ${alone})
     return()
   endif()
   # a process takes a tenth of a second to start under a sanitizer: one for each file, not for each test case

@@ -20,8 +20,8 @@
 #include <set>
 #include <vector>
 
-#include "physics/files/xml_line.hpp"
 #include "physics/robot_description.hpp"
+#include "physics/xml_line.hpp"
 
 namespace kenaf::physics {
 namespace {

@@ -39,7 +39,7 @@ quietly() {  # LOG COMMAND...
 }
 mounted=
 clean_up() {
-  [ -z "$mounted" ] || "${as_root[@]}" umount "$root/proc" "$root/dev/shm" || true
+  [ -z "$mounted" ] || "${as_root[@]}" umount "$root/proc" "$root/dev/shm" "$root/dev/pts" || true
   [ -n "${CHROOTS:-}" ] || "${as_root[@]}" rm -rf --one-file-system "$root"
 }
 trap clean_up EXIT
@@ -47,8 +47,10 @@ trap clean_up EXIT
 step "debootstrap"
 [ -e "$root/etc/debian_version" ] || quietly debootstrap.log "${as_root[@]}" debootstrap --variant=minbase "$release" "$root" ${mirror:+"$mirror"}
 "${as_root[@]}" mount -t proc proc "$root/proc"
-"${as_root[@]}" mkdir -p "$root/dev/shm"
+"${as_root[@]}" mkdir -p "$root/dev/shm" "$root/dev/pts"
 "${as_root[@]}" mount -t tmpfs tmpfs "$root/dev/shm"
+"${as_root[@]}" mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"
+"${as_root[@]}" ln -sf pts/ptmx "$root/dev/ptmx"
 mounted=yes
 printf '127.0.0.1 localhost\n::1 localhost ip6-localhost ip6-loopback\n' | in_root tee /etc/hosts >/dev/null  # as of every installation
 in_root id kenaf >/dev/null 2>&1 || in_root useradd --create-home kenaf

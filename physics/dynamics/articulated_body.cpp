@@ -110,12 +110,6 @@ ArticulatedBody to_solver(btRigidBody& base, std::span<Arm> arms, btScalar time_
   return body;
 }
 
-btVector3 velocity_without_contacts(const ArticulatedBody& body, const Arm* arm, const btVector3& p_W) {
-  const btVector3 v = body.v + body.w.cross(p_W - body.p_WC);
-  if (!arm) return v;
-  return v + arm->bias_v + (arm->bias_w + arm->axis_W * arm->rate).cross(p_W - arm->pivot_W);
-}
-
 void begin_anew(ArticulatedBody& body) {
   body.delta = TwoVectors{};
   if (body.arms.empty()) return;

@@ -48,6 +48,7 @@ struct ArticulatedBody {
   std::array<TwoVectors, robot::kFlipperCount> loose;  // u of each arm whose servo yields
   std::size_t loose_count = 0;
   btRigidBody* base;
+  int contact_count = 0;
 
   // The velocity change at C by an impulse with these components: linear, and moment about C.
   TwoVectors response(const TwoVectors& impulse) const {
@@ -66,7 +67,11 @@ struct ArticulatedBody {
 ArticulatedBody to_solver(btRigidBody& base, std::span<Arm> arms, btScalar time_step, btScalar correction_per_s);
 
 // The velocity of a point that is fixed to the base, or to `arm` if it is not null, without contacts.
-btVector3 velocity_without_contacts(const ArticulatedBody& body, const Arm* arm, const btVector3& p_W);
+inline btVector3 velocity_without_contacts(const ArticulatedBody& body, const Arm* arm, const btVector3& p_W) {
+  const btVector3 v = body.v + body.w.cross(p_W - body.p_WC);
+  if (!arm) return v;
+  return v + arm->bias_v + (arm->bias_w + arm->axis_W * arm->rate).cross(p_W - arm->pivot_W);
+}
 
 // Whether a servo acts otherwise than was assumed: one that holds would need more than its torque, or one that is at
 // the end of its torque is faster than its target. Then joints say what they do now; begin_anew() has to follow.

@@ -50,15 +50,38 @@ Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, const C
       warm_start_share(
           std::min(on_a.belt ? on_a.belt->warm_start_share : 1, on_b.belt ? on_b.belt->warm_start_share : 1)) {}
 
+// What a unit impulse changes along the rows: of the normal itself, of the tangents themselves, of one tangent by the
+// other, and of the tangents by the normal. (K = J M^-1 J^T; an arm whose servo yields adds lever_i lever_j g.)
+struct Contact::Mobility {
+  btScalar normal, coupled;
+  Two tangents, normal_to_slip;
+
+  void operator+=(const Mobility& b) {
+    normal += b.normal;
+    coupled += b.coupled;
+    tangents += b.tangents;
+    normal_to_slip += b.normal_to_slip;
+  }
+};
+
+Contact::Mobility Contact::mobility_of(const Rows& of, const Arm* arm) {
+  const auto parts = [&](int i, int j) { return sum_of_lanes(dot(of.row[i], of.response[j])); };
+  Mobility m{parts(0, 0), parts(1, 2), Two{parts(1, 1), parts(2, 2)}, Two{parts(1, 0), parts(2, 0)}};
+  if (!arm || arm->mobility == 0) return m;
+  m += {of.lever * of.lever * arm->mobility, of.levers[0] * of.levers[1] * arm->mobility,
+        of.levers * of.levers * arm->mobility, of.levers * (of.lever * arm->mobility)};
+  return m;
+}
+
 // With r from C to the point and the lever l = axis x (p - pivot) of an arm, an axis n of the contact has the row
 //   (n, r x n) - (l . n) g c
 // in which the rate of the arm is g (push - c . velocity), with g = 0 while its servo holds.
-Contact::Rows Contact::rows_of(const ContactSide& side, const btVector3& p_W, const btVector3& normal,
-                               const TwoVectors& tangents) {
+[[gnu::always_inline]] inline Contact::Mobility Contact::set_rows(Rows& rows, const ContactSide& side,
+                                                                  const btVector3& p_W, const btVector3& normal,
+                                                                  const TwoVectors& tangents) {
   const ArticulatedBody& body = *side.body;
   const btVector3 r = p_W - body.p_WC, moment = r.cross(normal);
   const TwoVectors moments = cross(r, tangents);
-  Rows rows;
   rows.row[0] = side_by_side(normal, moment);
   rows.row[1] = lanes(tangents, moments, 0);
   rows.row[2] = lanes(tangents, moments, 1);
@@ -66,21 +89,26 @@ Contact::Rows Contact::rows_of(const ContactSide& side, const btVector3& p_W, co
     const btVector3 lever = side.arm->axis_W.cross(p_W - side.arm->pivot_W);
     rows.lever = lever.dot(normal);
     rows.levers = dot(lever, tangents);
-    const TwoVectors follows = side.arm->coupling * side.arm->mobility;
-    rows.row[0] -= follows * rows.lever;
-    rows.row[1] -= follows * rows.levers[0];
-    rows.row[2] -= follows * rows.levers[1];
   }
   if (body.loose_count > 0) {
+    if (side.arm && side.arm->mobility > 0) {
+      const TwoVectors follows = side.arm->coupling * side.arm->mobility;
+      rows.row[0] -= follows * rows.lever;
+      rows.row[1] -= follows * rows.levers[0];
+      rows.row[2] -= follows * rows.levers[1];
+    }
     for (int i = 0; i < 3; ++i) rows.response[i] = body.response(rows.row[i]);
-    return rows;
+    return mobility_of(rows, side.arm);
   }
-  // The same with the two tangents side by side.
+  // All servos hold: 1 / m enters the diagonal only, as the axes are orthogonal, and the tangents are worked on side by
+  // side.
+  const btVector3 turn = body.inverse_inertia_W * moment;
   const TwoVectors turns = body.inverse_inertia_W * moments;
-  rows.response[0] = side_by_side(normal * body.inverse_mass, body.inverse_inertia_W * moment);
+  rows.response[0] = side_by_side(normal * body.inverse_mass, turn);
   rows.response[1] = lanes(tangents * body.inverse_mass, turns, 0);
   rows.response[2] = lanes(tangents * body.inverse_mass, turns, 1);
-  return rows;
+  return {body.inverse_mass + moment.dot(turn), vector_of(moments, 0).dot(vector_of(turns, 1)),
+          body.inverse_mass + dot(moments, turns), dot(turn, moments)};
 }
 
 Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step)
@@ -127,59 +155,42 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   if (belt_a_) gain_a_ = -dot(belt_a, tangents) * meeting.driving_a;
   if (belt_b_) gain_b_ = dot(belt_b, tangents) * meeting.driving_b;
 
-  // Effective inverse masses K = J M^-1 J^T: k00 of the normal, k11, k12, k22 of the tangents; an arm whose servo
-  // yields adds lever_i lever_j g. The coupling of normal and tangents is used one way only: the effect of the normal
-  // impulse on slip.
-  btScalar k00 = 0, k12 = 0;
-  Two k11_k22{0, 0};
-  normal_to_slip_ = Two{0, 0};
-  const auto add_rows = [&](const Rows& of, const Arm* arm) {
-    k00 += sum_of_lanes(dot(of.row[0], of.response[0]));
-    k11_k22 += Two{sum_of_lanes(dot(of.row[1], of.response[1])), sum_of_lanes(dot(of.row[2], of.response[2]))};
-    k12 += sum_of_lanes(dot(of.row[1], of.response[2]));
-    normal_to_slip_ += Two{sum_of_lanes(dot(of.row[1], of.response[0])), sum_of_lanes(dot(of.row[2], of.response[0]))};
-    if (!arm || arm->mobility == 0) return;
-    k00 += of.lever * of.lever * arm->mobility;
-    k11_k22 += of.levers * of.levers * arm->mobility;
-    k12 += of.levers[0] * of.levers[1] * arm->mobility;
-    normal_to_slip_ += of.levers * (of.lever * arm->mobility);
-  };
-  rows_a_ = rows_of(a_, p_W_, normal, tangents);
+  // The coupling of normal and tangents is used one way only: the effect of the normal impulse on slip.
+  Mobility mobility = set_rows(rows_a_, a_, p_W_, normal, tangents);
   btVector3 velocity = velocity_without_contacts(*a_.body, a_.arm, p_W_);
   if (b_.body) {
-    rows_b_ = rows_of(b_, p_W_, normal, tangents);
+    mobility += set_rows(rows_b_, b_, p_W_, normal, tangents);
     velocity -= velocity_without_contacts(*b_.body, b_.arm, p_W_);
-    if (b_.body == a_.body) merge_rows();
-    add_rows(rows_b_, b_.arm);
+    if (b_.body == a_.body) mobility = merge_rows();
   }
-  add_rows(rows_a_, a_.arm);
+  normal_to_slip_ = mobility.normal_to_slip;
+  normal_velocity_ = normal.dot(velocity);
 
   // Belts that their motors do not hold: gain gain^T times the mobility.
   slip_ = dot(velocity, tangents);
   const auto add_belt = [&](const Belt& belt, Two gain) {
-    k11_k22 += gain * gain * belt.mobility_per_kg;
-    k12 += gain[0] * gain[1] * belt.mobility_per_kg;
+    mobility.tangents += gain * gain * belt.mobility_per_kg;
+    mobility.coupled += gain[0] * gain[1] * belt.mobility_per_kg;
     slip_ += gain * belt.base_mps;
   };
   if (belt_a_) add_belt(*belt_a_, gain_a_);
   if (belt_b_) add_belt(*belt_b_, gain_b_);
-  normal_velocity_ = normal.dot(velocity);
 
   // Spring and damper, implicit: p = -h (k (gap + h v) + d v), p >= 0. Solved for v:
   //   v = -k gap / (h k + d) - p / (h (h k + d)) = give_velocity - softness p
-  // The row's residual is v - give_velocity + softness p, its derivative by p is k00 + softness.
+  // The row's residual is v - give_velocity + softness p, its derivative by p is the normal's mobility + softness.
   const btScalar stiffness =
       settings.stiffness_npm * touch.weight / (surface_a.compliance_scale * surface_b.compliance_scale);
   const btScalar damping = settings.damping_nspm * touch.weight * surface_a.damping_scale * surface_b.damping_scale;
-  const btScalar step_stiffness = stiffness * time_step + damping;
-  softness_ = 1 / (time_step * step_stiffness);
-  give_velocity_ = -stiffness * touch.gap_m / step_stiffness;
-  normal_mass_ = 1 / (k00 + softness_);
+  softness_ = 1 / (time_step * (stiffness * time_step + damping));
+  give_velocity_ = -stiffness * touch.gap_m * time_step * softness_;
+  normal_mobility_ = mobility.normal;
+  normal_mass_ = 1 / (mobility.normal + softness_);
 
   // Sticking: the impulse -K^-1 slip stops all slip; K is the 2 x 2 matrix of the tangents.
   mu_ = Two{std::max(mu_along, kLeastFriction), std::max(mu_across, kLeastFriction)};
   inverse_mu_ = 1 / mu_;
-  const btScalar k11 = k11_k22[0], k22 = k11_k22[1];
+  const btScalar k11 = mobility.tangents[0], k22 = mobility.tangents[1], k12 = mobility.coupled;
   const btScalar inverse_determinant = 1 / (k11 * k22 - k12 * k12);
   stick_[0] = Two{k22, -k12} * inverse_determinant;
   stick_[1] = Two{-k12, k11} * inverse_determinant;
@@ -202,12 +213,15 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
 }
 
 // Of two arms of one body: what the two rows do to the body is their difference, in A's; their levers stay apart.
-void Contact::merge_rows() {
+Contact::Mobility Contact::merge_rows() {
   for (int i = 0; i < 3; ++i) {
     rows_a_.row[i] -= rows_b_.row[i];
     rows_a_.response[i] -= rows_b_.response[i];
     rows_b_.row[i] = rows_b_.response[i] = TwoVectors{};
   }
+  Mobility mobility = mobility_of(rows_a_, a_.arm);
+  mobility += mobility_of(rows_b_, b_.arm);
+  return mobility;
 }
 
 // Inline: as a call it makes the computation of a time step 8 % slower.
@@ -253,7 +267,7 @@ void Contact::warm_start() {
 // It is taken at the slip of now and solved with the row, implicitly: however steeply friction rises with slip, the
 // impulse never jumps over the one that stops it. c_i grows with the slip, so repeating this comes to rest from one
 // side.
-[[gnu::noinline]] Two Contact::sheared_friction(Two slip, btScalar normal) const {
+[[gnu::noinline]] Two Contact::sheared_friction(Two slip, btScalar normal, btScalar share) const {
   const btScalar speed = std::sqrt(slip[0] * slip[0] + slip[1] * slip[1]);
   const Two scaled_slip = mu_ * slip;
   const btScalar mu = speed > 0 ? std::sqrt(scaled_slip[0] * scaled_slip[0] + scaled_slip[1] * scaled_slip[1]) / speed
@@ -269,7 +283,7 @@ void Contact::warm_start() {
   const Two change =
       Two{column_1[1] * stuck[0] - column_1[0] * stuck[1], column_0[0] * stuck[1] - column_0[1] * stuck[0]} /
       -determinant;
-  const Two friction = friction_impulse_ + change;
+  const Two friction = friction_impulse_ + share * change;
 
   // Never more than all of the friction, on the way there.
   const Two q = friction * inverse_mu_;
@@ -278,7 +292,7 @@ void Contact::warm_start() {
 }
 
 template <bool kOnGround, bool kSomeShear>
-[[gnu::always_inline]] inline btScalar Contact::solve_one(Moved a) {
+[[gnu::always_inline]] inline Contact::Change Contact::wanted_change(const Moved& a, btScalar share) const {
   // Normal: one Newton step of v - give_velocity + softness p = 0, clamped to p >= 0. A contact that is and stays open
   // changes nothing.
   const bool b_moves = !kOnGround && b_.body;
@@ -286,10 +300,12 @@ template <bool kOnGround, bool kSomeShear>
   const btScalar rate_b = b_moves && b_.arm ? b_.arm->mobility * b_.arm->push_nms : 0;
   btScalar velocity = normal_velocity_ + sum_of_lanes(dot(rows_a_.row[0], a.delta)) + rows_a_.lever * rate_a;
   if (b_moves) velocity -= sum_of_lanes(dot(rows_b_.row[0], b_.body->delta)) + rows_b_.lever * rate_b;
+  const btScalar mass = share == 1 ? normal_mass_ : share / (normal_mobility_ + share * softness_);
   const btScalar normal =
-      std::max(normal_impulse_ - (velocity - give_velocity_ + softness_ * normal_impulse_) * normal_mass_, btScalar(0));
+      std::max(normal_impulse_ - (velocity - give_velocity_ + softness_ * normal_impulse_) * mass, btScalar(0));
   const btScalar normal_change = normal - normal_impulse_;
-  if (normal <= 0 && normal_impulse_ <= 0 && friction_impulse_[0] == 0 && friction_impulse_[1] == 0) return 0;
+  if (normal <= 0 && normal_impulse_ <= 0 && friction_impulse_[0] == 0 && friction_impulse_[1] == 0)
+    return {0, Two{0, 0}};
 
   // Friction: the slip with the normal's change and the belts' speeds in it.
   Two friction{0, 0};
@@ -304,17 +320,23 @@ template <bool kOnGround, bool kSomeShear>
     slip += normal_to_slip_ * normal_change;
     slip += gain_a_ * (a.belt_mobility * a.belt_ns);
     if (!kOnGround && belt_b_) slip += gain_b_ * (belt_b_->mobility_per_kg * belt_b_->push_ns);
-    friction = kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal) : coulomb_friction(slip, normal);
+    friction =
+        kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal, share) : coulomb_friction(share * slip, normal);
   }
+  return {normal_change, friction - friction_impulse_};
+}
 
-  // Apply the changes; the residual is the squared linear velocity change of A.
-  const Two friction_change = friction - friction_impulse_;
-  normal_impulse_ = normal;
-  friction_impulse_ = friction;
-  apply<kOnGround>(a, normal_change, friction_change);
-  return (normal_change * normal_change + friction_change[0] * friction_change[0] +
-          friction_change[1] * friction_change[1]) *
-         inverse_mass_a_ * inverse_mass_a_;
+template <bool kOnGround>
+[[gnu::always_inline]] inline void Contact::make(const Change& change, const Moved& a) {
+  normal_impulse_ += change.normal;
+  friction_impulse_ += change.friction;
+  apply<kOnGround>(a, change.normal, change.friction);
+}
+
+// The squared velocity change of A.
+btScalar Contact::residual_of(const Change& change) const {
+  const Two squares = change.friction * change.friction;
+  return (change.normal * change.normal + squares[0] + squares[1]) * inverse_mass_a_ * inverse_mass_a_;
 }
 
 Contact::Moved Contact::in_place(Nothing& none) const {
@@ -335,7 +357,9 @@ btScalar Contact::solve_each(std::span<Contact> contacts) {
     const Moved place = first.in_place(none);
     // Between moving things: one at a time, in place.
     if (!first.on_ground()) {
-      residual = std::max(residual, next->solve_one<false, kSomeShear>(place));
+      const Change change = next->wanted_change<false, kSomeShear>(place, 1);
+      next->make<false>(change, place);
+      residual = std::max(residual, next->residual_of(change));
       ++next;
       continue;
     }
@@ -346,8 +370,11 @@ btScalar Contact::solve_each(std::span<Contact> contacts) {
     const Moved kept{delta, arm_nms, belt_ns, load_ns, place.arm_mobility, place.belt_mobility};
     for (; next != contacts.end() && next->on_ground() && next->a_.body == first.a_.body &&
            next->a_.arm == first.a_.arm && next->belt_a_ == first.belt_a_;
-         ++next)
-      residual = std::max(residual, next->solve_one<true, kSomeShear>(kept));
+         ++next) {
+      const Change change = next->wanted_change<true, kSomeShear>(kept, 1);
+      next->make<true>(change, kept);
+      residual = std::max(residual, next->residual_of(change));
+    }
     place.delta = delta;
     place.arm_nms = arm_nms;
     place.belt_ns = belt_ns;
@@ -358,6 +385,32 @@ btScalar Contact::solve_each(std::span<Contact> contacts) {
 
 btScalar Contact::solve(std::span<Contact> contacts, bool some_shear) {
   return some_shear ? solve_each<true>(contacts) : solve_each<false>(contacts);
+}
+
+template <bool kSomeShear>
+btScalar Contact::share_each(std::span<Contact> contacts, std::span<Change> changes) {
+  btScalar residual = 0;
+  Nothing none;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& contact = contacts[i];
+    const Moved place = contact.in_place(none);
+    const int sharing = std::max(contact.a_.body->contact_count, contact.b_.body ? contact.b_.body->contact_count : 0);
+    changes[i] = contact.on_ground() ? contact.wanted_change<true, kSomeShear>(place, 1.0 / sharing)
+                                     : contact.wanted_change<false, kSomeShear>(place, 1.0 / sharing);
+    residual = std::max(residual, contact.residual_of(changes[i]) * sharing * sharing);
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].make<false>(changes[i], contacts[i].in_place(none));
+  return residual;
+}
+
+btScalar Contact::share(std::span<Contact> contacts, bool some_shear, std::vector<Change>& scratch) {
+  scratch.resize(contacts.size());
+  return some_shear ? share_each<true>(contacts, scratch) : share_each<false>(contacts, scratch);
+}
+
+void Contact::count() const {
+  ++a_.body->contact_count;
+  if (b_.body) ++b_.body->contact_count;
 }
 
 void Contact::keep_impulses() const {

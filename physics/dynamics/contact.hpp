@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "physics/dynamics/articulated_body.hpp"
 #include "physics/dynamics/bullet.hpp"
@@ -51,8 +52,19 @@ class Contact {
   Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
   void warm_start();
-  // One iteration over contacts in their order. Returns the largest squared velocity change of a body A. `some_shear`:
-  // a contact of them may have a stretch; without, none of its cost.
+  // Counts it as one of its bodies' contacts (ArticulatedBody::contact_count).
+  void count() const;
+  struct Change {  // of the impulses
+    btScalar normal;
+    Two friction;
+  };
+  // An iteration in which each contact moves an equal share of its body's mass, all by the same velocities (mass
+  // splitting: Tonge, Benevolenski, Voroshilov, "Mass splitting for jitter-free parallel rigid body simulation", 2012).
+  // What several could hold is shared evenly, whatever their order. Returns the largest squared velocity change of a
+  // body A that a contact would make alone.
+  static btScalar share(std::span<Contact> contacts, bool some_shear, std::vector<Change>& scratch);
+  // One iteration over contacts in their order, each with what those before it have left. Returns the largest squared
+  // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
   // Writes the impulses to where they were taken from, for the next step or to make the contact anew in this one.
   void keep_impulses() const;
@@ -84,9 +96,11 @@ class Contact {
     btScalar lever = 0;      // of the normal about the arm's axis, m
     Two levers{0, 0};        // of the tangents
   };
-  static Rows rows_of(const ContactSide& side, const btVector3& p_W, const btVector3& normal,
-                      const TwoVectors& tangents);
-  void merge_rows();
+  struct Mobility;
+  static Mobility set_rows(Rows& rows, const ContactSide& side, const btVector3& p_W, const btVector3& normal,
+                           const TwoVectors& tangents);
+  static Mobility mobility_of(const Rows& of, const Arm* arm);
+  Mobility merge_rows();
   struct Nothing {  // stands in for what A has not
     btScalar arm_nms = 0, belt_ns = 0, load_ns = 0;
   };
@@ -94,13 +108,19 @@ class Contact {
   bool on_ground() const { return !b_.body && !belt_b_; }
   template <bool kSomeShear>
   static btScalar solve_each(std::span<Contact> contacts);
+  template <bool kSomeShear>
+  static btScalar share_each(std::span<Contact> contacts, std::span<Change> changes);
+  // What the contact would do if nothing else changed and it alone moved `share` of the bodies' masses.
   template <bool kOnGround, bool kSomeShear>
-  btScalar solve_one(Moved a);
+  Change wanted_change(const Moved& a, btScalar share) const;
+  template <bool kOnGround>
+  void make(const Change& change, const Moved& a);
+  btScalar residual_of(const Change& change) const;
   template <bool kOnGround>
   void apply(Moved a, btScalar normal, Two friction);
   // The friction impulses with all of the coefficient, and with the share that has built up.
   Two coulomb_friction(Two slip, btScalar normal) const;
-  Two sheared_friction(Two slip, btScalar normal) const;
+  Two sheared_friction(Two slip, btScalar normal, btScalar share) const;
 
   ContactSide a_, b_;
   Belt *belt_a_, *belt_b_;
@@ -111,7 +131,7 @@ class Contact {
   Two friction_impulse_;
   btScalar normal_velocity_;  // before any impulse of this step
   Two slip_;
-  btScalar normal_mass_, softness_, give_velocity_;
+  btScalar normal_mobility_, normal_mass_, softness_, give_velocity_;
   Two normal_to_slip_;  // slip change for a unit normal impulse
   Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
   Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu

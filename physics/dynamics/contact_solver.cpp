@@ -18,6 +18,7 @@ void ContactSolver::add_belt(Belt* belt, const btRigidBody* body) {
   belts_.push_back({belt, body});
   contacts_.reserve(kManyContacts * belts_.size());
   contacts_anew_.reserve(kManyContacts * belts_.size());
+  changes_.reserve(kManyContacts * belts_.size());
   touching_.reserve(kManyContacts * belts_.size());
   touching_by_group_.make_room(kManyContacts * belts_.size());
   belt_ground_.make_room(kManyPairs * belts_.size());
@@ -40,7 +41,10 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   find_groups(dispatcher);
   for (const auto& [belt, body] : belts_) start_step(*belt, info.m_timeStep);
   make_contacts(dispatcher, info.m_timeStep);
-  for (Contact& contact : contacts_) contact.warm_start();
+  for (Contact& contact : contacts_) {
+    contact.count();
+    contact.warm_start();
+  }
 
   for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, dispatcher, info);
 
@@ -156,17 +160,22 @@ std::span<Contact> ContactSolver::contacts_of(std::size_t group) {
   return std::span(contacts_).subspan(first, contacts_end_[group] - first);
 }
 
-// Until an iteration changes no velocity of the group or the iterations are used up. At which limits motors and servos
+// Until an iteration changes no velocity of the group or the iterations are used up. The first ones share what several
+// contacts could hold evenly: what holds the robot straight, the two tracks or the friction across them, is not
+// determined, and one after the other the first track would pull alone. At which limits motors and servos
 // are is looked at by the impulses to start from, then on the way and at the end; where it is not what was assumed, the
 // group begins anew with the impulses that it has.
 void ContactSolver::solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info) {
   constexpr int kIterationsToLook = 3;
+  constexpr int kShared =
+      4;  // iterations; left and right track pull alike within 1 % then, as a rest of the pull is left
   constexpr int kMostTimesAnew = 8;
   solve_friction_of_belts(group);
   if (settle_motors(group)) make_anew(group, dispatcher, info.m_timeStep);
   int times_anew = 0;
   for (int i = 1; i <= info.m_numIterations; ++i) {
-    const bool solved = iterate(group) <= info.m_leastSquaresResidualThreshold;
+    const bool solved = iterate(group, i <= kShared ? Iteration::shared : Iteration::one_by_one) <=
+                        info.m_leastSquaresResidualThreshold;
     const bool look = solved || i == info.m_numIterations || i % kIterationsToLook == 0;
     if (look && settle_motors(group) && times_anew < kMostTimesAnew) {
       make_anew(group, dispatcher, info.m_timeStep);
@@ -185,9 +194,11 @@ btScalar ContactSolver::solve_friction_of_belts(std::size_t group) {
   return residual;
 }
 
-btScalar ContactSolver::iterate(std::size_t group) {
+btScalar ContactSolver::iterate(std::size_t group, Iteration how) {
   const btScalar residual = solve_friction_of_belts(group);
-  return std::max(residual, Contact::solve(contacts_of(group), some_shear_));
+  const std::span<Contact> contacts = contacts_of(group);
+  return std::max(residual, how == Iteration::shared ? Contact::share(contacts, some_shear_, changes_)
+                                                     : Contact::solve(contacts, some_shear_));
 }
 
 bool ContactSolver::settle_motors(std::size_t group) {

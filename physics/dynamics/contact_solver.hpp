@@ -56,8 +56,9 @@ class ContactSolver {
   void make_contacts(btDispatcher& dispatcher, btScalar time_step);
   void solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info);
   btScalar solve_friction_of_belts(std::size_t group);
-  btScalar iterate(std::size_t group);    // returns the largest squared velocity change
-  bool settle_motors(std::size_t group);  // of belts, and servos
+  enum class Iteration { shared, one_by_one };
+  btScalar iterate(std::size_t group, Iteration how);  // returns the largest squared velocity change
+  bool settle_motors(std::size_t group);               // of belts, and servos
   // Bodies, belts and contacts of the group for motors at other limits, with the contacts' impulses as they are.
   void make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step);
   std::span<Contact> contacts_of(std::size_t group);
@@ -79,6 +80,7 @@ class ContactSolver {
       touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
   // Group by group.
   std::vector<Contact> contacts_, contacts_anew_;
+  std::vector<Contact::Change> changes_;
   bool some_shear_ = false;                // of contacts_
   std::vector<std::size_t> contacts_end_;  // of each group
 };

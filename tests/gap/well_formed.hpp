@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "physics/files/xml_line.hpp"
+#include "physics/xml_line.hpp"
 
 namespace kenaf::test {
 

@@ -70,13 +70,13 @@ long fail_each_call(const std::function<void(World&)>& work) {
 
 }  // namespace
 
-TEST_CASE("A robot for which there is no memory is not in the world") {
+TEST_CASE("A robot for which there is no memory is not in the world", "[hostile]") {
   CHECK(fail_each_call([](World& world) {
           world.add_robot(kKenaf, "second", {{3, 0, 0}, Eigen::Quaterniond::Identity()});
         }) > 50);
 }
 
-TEST_CASE("A box for which there is no memory is not in the world") {
+TEST_CASE("A box for which there is no memory is not in the world", "[hostile]") {
   CHECK(fail_each_call([](World& world) {
           Box box;
           box.mass_kg = 1;
@@ -86,11 +86,11 @@ TEST_CASE("A box for which there is no memory is not in the world") {
         }) > 5);
 }
 
-TEST_CASE("A reset for which there is no memory has not begun") {
+TEST_CASE("A reset for which there is no memory has not begun", "[hostile]") {
   CHECK(fail_each_call([](World& world) { world.reset(); }) > 100);
 }
 
-TEST_CASE("A step in which memory is out leaves a world that can be stepped on") {
+TEST_CASE("A step in which memory is out leaves a world that can be stepped on", "[hostile]") {
   World world = with_robot();
   long n = 1;
   for (bool failed = true; failed; ++n) {

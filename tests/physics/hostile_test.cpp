@@ -21,7 +21,7 @@ Box cube(double side_m, const Eigen::Vector3d& p_W, double mass_kg) {
 
 }  // namespace
 
-TEST_CASE("Boxes beyond the most pairs meet the ground alone, and none falls through it") {
+TEST_CASE("Boxes beyond the most pairs meet the ground alone, and none falls through it", "[hostile]") {
   World world = flat();
   constexpr std::size_t kBoxes = 300;  // 300 * 299 / 2 = 44850 pairs, if all were made
   for (std::size_t i = 0; i < kBoxes; ++i) world.add_box(cube(0.2, {0, 0, 0.5}, 1));
@@ -32,7 +32,8 @@ TEST_CASE("Boxes beyond the most pairs meet the ground alone, and none falls thr
   }
 }
 
-TEST_CASE("A thousand small boxes in a heap have too many neighbours, and none of them falls through the ground") {
+TEST_CASE("A thousand small boxes in a heap have too many neighbours, and none of them falls through the ground",
+          "[hostile]") {
   // Cubes of 1 cm, 2 cm apart, fall onto each other: Bullet takes boxes within some centimetres for near.
   World world = flat();
   for (int i = 0; i < 1000; ++i) {
@@ -47,7 +48,7 @@ TEST_CASE("A thousand small boxes in a heap have too many neighbours, and none o
   }
 }
 
-TEST_CASE("The boxes that would overlap one are counted at their present and at their initial places") {
+TEST_CASE("The boxes that would overlap one are counted at their present and at their initial places", "[hostile]") {
   World world = flat();
   const BoxId first = world.add_box(cube(1, {0, 0, 0.5}, 1));
   world.add_box(cube(1, {1, 0, 0.5}, 0));  // touches the first, face to face

@@ -75,7 +75,7 @@ std::size_t peak_memory_bytes() {
 
 }  // namespace
 
-TEST_CASE("Pipes, devices, folders and files of 1 GB are no worlds") {
+TEST_CASE("Pipes, devices, folders and files of 1 GB are no worlds", "[hostile]") {
   const TemporaryFolder folder;
   REQUIRE(::mkfifo((folder / "pipe.sdf").c_str(), 0600) == 0);
   fs::create_symlink("/dev/zero", folder / "endless.sdf");
@@ -87,7 +87,7 @@ TEST_CASE("Pipes, devices, folders and files of 1 GB are no worlds") {
     CHECK_THROWS_WITH(load_world((folder / name).string(), notes), Contains(name));
 }
 
-TEST_CASE("Pipes, devices and files of 1 GB are no models, meshes and height maps") {
+TEST_CASE("Pipes, devices and files of 1 GB are no models, meshes and height maps", "[hostile]") {
   const TemporaryFolder outer;
   const fs::path folder = outer / "world";
   for (const char* model : {"pipe", "endless", "huge"}) fs::create_directories(folder / model);
@@ -114,7 +114,7 @@ TEST_CASE("Pipes, devices and files of 1 GB are no models, meshes and height map
   check("<include><uri>model://", "</uri></include>");
 }
 
-TEST_CASE("No include leads out of the folders that are named") {
+TEST_CASE("No include leads out of the folders that are named", "[hostile]") {
   const TemporaryFolder outer;
   const fs::path folder = outer / "world", search = outer / "search";
   for (const char* name : {"world/way/in", "world/config", "world/linked", "search/far", "secret"})
@@ -143,7 +143,7 @@ TEST_CASE("No include leads out of the folders that are named") {
   CHECK_THAT(error_of(world_with(include("../search/far")), folder), Contains("is not in a folder"));
 }
 
-TEST_CASE("A file that includes itself is refused with the chain of files") {
+TEST_CASE("A file that includes itself is refused with the chain of files", "[hostile]") {
   const TemporaryFolder folder;
   const fs::path real = fs::canonical(folder.path());
   for (const char* name : {"a", "b", "c"}) fs::create_directory(folder / name);
@@ -165,7 +165,7 @@ TEST_CASE("A file that includes itself is refused with the chain of files") {
     CHECK_THROWS_WITH(load_world((folder / name).string(), notes), Contains(":2: a file includes itself: "));
 }
 
-TEST_CASE("Models are nested 16 deep and no deeper, in one file or many") {
+TEST_CASE("Models are nested 16 deep and no deeper, in one file or many", "[hostile]") {
   const auto nested = [](int depth) {
     std::string text = link(shape(kBox));
     for (int i = depth; i > 0; --i) text = model("m" + std::to_string(i), text);
@@ -186,7 +186,7 @@ TEST_CASE("Models are nested 16 deep and no deeper, in one file or many") {
 }
 
 // 2^15 models from 15 small files.
-TEST_CASE("Models that double at each include end at the limit of models") {
+TEST_CASE("Models that double at each include end at the limit of models", "[hostile]") {
   const TemporaryFolder folder;
   write_file(folder / "m15.sdf", model_file(link("")));
   for (int level = 14; level > 0; --level) {
@@ -196,7 +196,7 @@ TEST_CASE("Models that double at each include end at the limit of models") {
   CHECK_THAT(error_of(world_with(include("m1.sdf")), folder.path()), Contains("the world has more than 5000 models"));
 }
 
-TEST_CASE("Links, shapes and frames have a limit") {
+TEST_CASE("Links, shapes and frames have a limit", "[hostile]") {
   std::string links, shapes, frames;
   for (int i = 0; i < 5001; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>\n";
   CHECK(error_of(world_with(model("m", links))) == "w.sdf:5002: the world has more than 5000 links");
@@ -207,7 +207,7 @@ TEST_CASE("Links, shapes and frames have a limit") {
 }
 
 // The first frame is relative to the world.
-TEST_CASE("Poses are relative to a chain of at most 100 others, and to no circle") {
+TEST_CASE("Poses are relative to a chain of at most 100 others, and to no circle", "[hostile]") {
   const auto chain = [](const std::string& attribute, int length) {
     std::string frames = "<frame name=\"f0\"><pose>1 0 0 0 0 0</pose></frame>";
     for (int i = 1; i <= length; ++i) {
@@ -229,7 +229,7 @@ TEST_CASE("Poses are relative to a chain of at most 100 others, and to no circle
   CHECK_THAT(error_of(world_with("<frame name=\"a\"><pose relative_to=\"nobody\"/></frame>")), Contains("nobody"));
 }
 
-TEST_CASE("Elements, attributes and points have a limit before they are read") {
+TEST_CASE("Elements, attributes and points have a limit before they are read", "[hostile]") {
   std::string elements, attributes, points;
   for (int i = 0; i < 1'000'000; ++i) elements += "<a/>";
   CHECK_THAT(error_of(world_with(elements)), Contains("too many elements and attributes"));
@@ -240,7 +240,7 @@ TEST_CASE("Elements, attributes and points have a limit before they are read") {
              Catch::StartsWith("w.sdf:2: ") && Contains("at most 500 corners"));
 }
 
-TEST_CASE("A model.config has at most 64 KiB") {
+TEST_CASE("A model.config has at most 64 KiB", "[hostile]") {
   const TemporaryFolder folder;
   fs::create_directory(folder / "m");
   write_file(folder / "m/model.sdf", model_file(link("")));
@@ -253,7 +253,7 @@ TEST_CASE("A model.config has at most 64 KiB") {
              Catch::StartsWith("w.sdf:2: ") && Contains("model.config\" is larger than 65536 bytes"));
 }
 
-TEST_CASE("All files of a world have 64 MiB together") {
+TEST_CASE("All files of a world have 64 MiB together", "[hostile]") {
   const TemporaryFolder folder;
   std::string includes;
   for (int i = 0; i < 5; ++i) {
@@ -265,7 +265,7 @@ TEST_CASE("All files of a world have 64 MiB together") {
              Contains("w.sdf:6: ") && Contains("m4.sdf") && Contains("of the 64 MiB of all of a world's files"));
 }
 
-TEST_CASE("A mesh that is used a thousand times is read once") {
+TEST_CASE("A mesh that is used a thousand times is read once", "[hostile]") {
   const TemporaryFolder folder;
   write_file(folder / "rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n#" + std::string(1U << 20U, 'x'));
   std::string shapes;
@@ -273,7 +273,7 @@ TEST_CASE("A mesh that is used a thousand times is read once") {
   CHECK(error_of(world_with(model("m", link(shapes))), folder.path()) == kLoads);
 }
 
-TEST_CASE("After 1000 notes the others are counted") {
+TEST_CASE("After 1000 notes the others are counted", "[hostile]") {
   std::string unknown;
   for (int i = 0; i < 1500; ++i) unknown += "<light name=\"l\"/>\n";
   std::vector<std::string> notes{"of the caller"};
@@ -282,7 +282,7 @@ TEST_CASE("After 1000 notes the others are counted") {
   CHECK(notes.back() == "500 more notes of this kind are left out");
 }
 
-TEST_CASE("Includes that say nothing or nonsense are refused or noted") {
+TEST_CASE("Includes that say nothing or nonsense are refused or noted", "[hostile]") {
   const TemporaryFolder folder;
   write_file(folder / "m.sdf", model_file(link("")));
   write_file(folder / "broken.sdf", "<sdf version=\"1.9\"><model");
@@ -304,7 +304,7 @@ TEST_CASE("Includes that say nothing or nonsense are refused or noted") {
 }
 
 // 128 x 256 squares, two triangles each: 2^16, so that 2^5 of them are 2^21.
-TEST_CASE("A world has at most 2^21 triangles", "[long]") {
+TEST_CASE("A world has at most 2^21 triangles", "[long][hostile]") {
   const TemporaryFolder folder;
   std::string grid, shapes;
   for (int x = 0; x <= 128; ++x)
@@ -323,7 +323,7 @@ TEST_CASE("A world has at most 2^21 triangles", "[long]") {
              Contains("the world has too many triangles: only 0 are left"));
 }
 
-TEST_CASE("A thousand boxes, written or included, take less than 512 MiB", "[long]") {
+TEST_CASE("A thousand boxes, written or included, take less than 512 MiB", "[long][hostile]") {
   const TemporaryFolder folder;
   write_file(folder / "block.sdf", model_file(link(shape(kBox))));
   std::string written, included;

@@ -58,6 +58,31 @@ TEST_CASE("A robot without a command stays where it is") {
   CHECK((world.truth(id).X_WB.p - before.p).norm() < 1e-4);
 }
 
+// 20 kg and two belts of 1.5 kg. Friction across could hold a robot straight whose left track pulls alone, too.
+TEST_CASE("Both tracks pull alike while a robot speeds up, slows down and climbs a slope") {
+  for (const double slope_rad : {0.0, 0.2}) {
+    WorldDescription description = ground();
+    description.gravity_W_mps2 = kGravity * Eigen::Vector3d(-std::sin(slope_rad), 0, -std::cos(slope_rad));
+    World world(description, {}, 1);
+    const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+    run(world, 0.5);
+    double speed_mps = world.truth(id).v_WB_mps.x(), belt_mps = world.truth(id).track_mps[robot::kLeft];
+    for (int i = 0; i < 1000; ++i) {
+      world.set_command(id, i < 500 ? drive(0.2, 0.2) : drive(-0.1, -0.1));
+      world.step();
+      const RobotTruth truth = world.truth(id);
+      const double left_n = truth.track_force_n[robot::kLeft], right_n = truth.track_force_n[robot::kRight];
+      const double needed_n = 20 * ((truth.v_WB_mps.x() - speed_mps) / 1e-3 + kGravity * std::sin(slope_rad)) +
+                              3 * (truth.track_mps[robot::kLeft] - belt_mps) / 1e-3;
+      speed_mps = truth.v_WB_mps.x();
+      belt_mps = truth.track_mps[robot::kLeft];
+      INFO("slope " << slope_rad << ", step " << i);
+      REQUIRE(std::abs(left_n - right_n) < 2);  // of up to 70 N each
+      if (i % 500 > 5) REQUIRE(left_n + right_n == Approx(needed_n).epsilon(0.02).margin(0.5));
+    }
+  }
+}
+
 TEST_CASE("3 mm/s does not fall asleep") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});

@@ -16,7 +16,7 @@ constexpr std::uint64_t kSession = 11;
 
 }  // namespace
 
-TEST_CASE("A commander whose relay waits for a hung world is told so, and begins once the world is back") {
+TEST_CASE("A commander whose relay waits for a hung world is told so, and begins once the world is back", "[hostile]") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander first(relay.port(), 10);

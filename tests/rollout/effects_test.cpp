@@ -12,7 +12,7 @@ using namespace kenaf::rollout;
 
 namespace {
 
-enum Scene { turning, lifting, stepping, rolling, falling };
+enum Scene { turning, lifting, stepping, gripping, rolling, falling };
 
 // Flippers as the robot carries them, or those of the front and the rear.
 Phase phase(double left_mps, double right_mps, double time_s, double front_rad = 1, double rear_rad = 1) {
@@ -33,6 +33,7 @@ Manoeuvre manoeuvre_of(Scene scene) {
       manoeuvre.phases = {phase(0, 0, 1.8, -0.8), phase(0, 0, 0.7, 0)};
       break;
     case stepping:
+    case gripping:
     case rolling:
       manoeuvre.phases = {phase(0.4, 0.4, 2.5)};
       break;
@@ -52,6 +53,7 @@ physics::WorldDescription world_of(Scene scene) {
     world.boxes.push_back({"box", size_m, {center_m, Eigen::Quaterniond::Identity()}, 1, 0});
   };
   if (scene == stepping) add({2, 2, 0.06}, {1.4, 0, 0.03});       // both tracks
+  if (scene == gripping) add({2, 2, 0.15}, {1.4, 0, 0.075});      // as high as the tracks, which have to hold its edge
   if (scene == rolling) add({0.1, 0.2, 0.04}, {0.5, 0.1, 0.02});  // the left track, which then falls off
   return world;
 }
@@ -68,7 +70,7 @@ RollOut run_of(Scene scene, const physics::Effects& effects) {
 const RollOut& nominal_run_of(Scene scene) {
   static const std::map<Scene, RollOut> runs = [] {
     std::map<Scene, RollOut> all;
-    for (const Scene each : {turning, lifting, stepping, rolling, falling}) all[each] = run_of(each, {});
+    for (const Scene each : {turning, lifting, stepping, gripping, rolling, falling}) all[each] = run_of(each, {});
     return all;
   }();
   return runs.at(scene);
@@ -133,7 +135,7 @@ const std::map<std::string_view, Shows> kShows{
     {"slip_with_speed", {turning, "x_m"}},
     {"shear_deformation", {turning, "yaw_rad"}},
     {"rolling_resistance", {turning, "track_left_a"}},
-    {"lug_height", {stepping, "pitch_rad"}},
+    {"lug_height", {gripping, "pitch_rad"}},
     {"ground_compliance", {falling, "acc_z_mps2"}},
     {"ground_damping", {falling, "acc_z_mps2"}},
     {"obstacle_height", {stepping, "z_m"}},

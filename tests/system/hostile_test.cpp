@@ -46,7 +46,7 @@ std::vector<double> y_of_robots(support::UsarsimClient& controller, const std::s
 
 }  // namespace
 
-TEST_CASE("A signal ends a program that is still loading its world") {
+TEST_CASE("A signal ends a program that is still loading its world", "[hostile]") {
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"kenaf-world", "--port", "0", "--view", "off", "--cameras", "off"},
         std::vector<std::string>{"kenaf-relayd", "--embedded", "--listen", "127.0.0.1:0", "--view", "off", "--cameras",
@@ -73,7 +73,7 @@ TEST_CASE("A signal ends a program that is still loading its world") {
   }
 }
 
-TEST_CASE("A world of a thousand boxes answers, and a signal ends it") {
+TEST_CASE("A world of a thousand boxes answers, and a signal ends it", "[hostile]") {
   support::TemporaryFolder folder;
   const std::filesystem::path port_file = folder.path() / "port";
   support::Process world =
@@ -100,7 +100,7 @@ TEST_CASE("A world of a thousand boxes answers, and a signal ends it") {
   CHECK(world.wait() == 0);
 }
 
-TEST_CASE("A hung world server is told from a relay that is not there") {
+TEST_CASE("A hung world server is told from a relay that is not there", "[hostile]") {
   Chain chain("1");
   chain.world().signal(SIGSTOP);
   support::Process program = chain.start_program("status_monitor_sim");
@@ -114,7 +114,7 @@ TEST_CASE("A hung world server is told from a relay that is not there") {
   CHECK(said.find("world server") != std::string::npos);
 }
 
-TEST_CASE("A robot whose connection was cut is replaced where it began when its relay is back") {
+TEST_CASE("A robot whose connection was cut is replaced where it began when its relay is back", "[hostile]") {
   support::TemporaryFolder folder;
   const auto port_file = [&](const std::string& of) { return (folder.path() / (of + ".port")).string(); };
   support::Process world =

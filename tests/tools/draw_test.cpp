@@ -137,7 +137,7 @@ TEST_CASE("Wrong input: exit status 2, what is wrong and where, and no picture")
                         {"run.csv --out a.png --robot no-such-robot", "no-such-robot"},
                         {"run.csv --out a.png --world no-such-world", "no-such-world"},
                         {"run.csv", "--out"},
-                        {"--out a.png", "run is required"}}) {
+                        {"--out a.png", "file is required"}}) {
     INFO(c.arguments);
     const test::Outcome outcome = kenaf_draw(folder, c.arguments);
     CHECK(outcome.status == 2);

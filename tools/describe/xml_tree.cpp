@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "physics/files/xml_line.hpp"
+#include "physics/xml_line.hpp"
 
 namespace kenaf::describe {
 namespace {

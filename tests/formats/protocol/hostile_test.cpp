@@ -27,7 +27,8 @@ std::string_view shown_by(std::string_view bytes, std::size_t piece) {
 
 }  // namespace
 
-TEST_CASE("A connection shows in its first line which other protocol it speaks, however its bytes are cut") {
+TEST_CASE("A connection shows in its first line which other protocol it speaks, however its bytes are cut",
+          "[hostile]") {
   using namespace std::string_view_literals;
   for (const auto& [bytes, protocol] : {
            Case{"POST / HTTP/1.1\r\nHost: 127.0.0.1:3000\r\n\r\nINIT {ClassName USARBot.P2DX}\r\n", "HTTP"},
@@ -50,13 +51,13 @@ TEST_CASE("A connection shows in its first line which other protocol it speaks, 
   }
 }
 
-TEST_CASE("A first byte of TLS counts at the beginning of a connection alone") {
+TEST_CASE("A first byte of TLS counts at the beginning of a connection alone", "[hostile]") {
   Opening opening;
   CHECK(opening.take("I").empty());
   CHECK(opening.take("\x16\x03\x01").empty());
 }
 
-TEST_CASE("An opening without a line end is decided after 1 KiB, and holds no more than that") {
+TEST_CASE("An opening without a line end is decided after 1 KiB, and holds no more than that", "[hostile]") {
   Opening opening;
   CHECK(opening.take(std::string(1023, 'x')).empty());
   CHECK(opening.take("x HTTP/1.1\r\n").empty());  // the last byte that counts

@@ -10,7 +10,7 @@
 
 namespace kenaf::image_server {
 
-TEST_CASE("A reader that opens with another protocol is let go, and what it asks for in it is not drawn") {
+TEST_CASE("A reader that opens with another protocol is let go, and what it asks for in it is not drawn", "[hostile]") {
   CameraWorld world;
   Robot robot(world, "R1");
   ImageClient client(world.port());
@@ -23,7 +23,8 @@ TEST_CASE("A reader that opens with another protocol is let go, and what it asks
   }
 }
 
-TEST_CASE("Idle readers give way when all connections are taken, and those that wait for a picture do not") {
+TEST_CASE("Idle readers give way when all connections are taken, and those that wait for a picture do not",
+          "[hostile]") {
   ImageServerLimits limits;
   limits.connections = 4;
   limits.idle_s = 0;

@@ -91,7 +91,8 @@ std::string outcome_of(Browser& browser, const std::string& url, const std::stri
 
 }  // namespace
 
-TEST_CASE("In a browser: a page of another origin places no robot, whatever it posts to the world's port") {
+TEST_CASE("In a browser: a page of another origin places no robot, whatever it posts to the world's port",
+          "[hostile]") {
   ServersLog log;
   support::TemporaryFolder profile;
   ServedWorld world;
@@ -109,7 +110,8 @@ TEST_CASE("In a browser: a page of another origin places no robot, whatever it p
   CHECK(controller.line_that_begins("STA") == "STA");
 }
 
-TEST_CASE("In a browser: neither a page of another origin nor one under a foreign name reaches the live view") {
+TEST_CASE("In a browser: neither a page of another origin nor one under a foreign name reaches the live view",
+          "[hostile]") {
   ServersLog log;
   support::TemporaryFolder profile;
   ServedWorld world;

@@ -60,7 +60,7 @@ struct Driven : Conversation {
 
 }  // namespace
 
-TEST_CASE("A request for which there is no memory ends its connection at most, and the others drive on") {
+TEST_CASE("A request for which there is no memory ends its connection at most, and the others drive on", "[hostile]") {
   for (const std::string request : {
            "INIT {ClassName USARBot.P2AT} {Name Second}\r\n",
            "CONTROL {Type Create} {ClassName Box} {Name A box with a name that is long} {Location 3,3,-1}\r\n",
@@ -81,7 +81,7 @@ TEST_CASE("A request for which there is no memory ends its connection at most, a
   }
 }
 
-TEST_CASE("A client or an operator's robot for whom there is no memory has not come") {
+TEST_CASE("A client or an operator's robot for whom there is no memory has not come", "[hostile]") {
   for (const bool by_operator : {false, true}) {
     Driven talk;
     long n = 0;
@@ -101,7 +101,7 @@ TEST_CASE("A client or an operator's robot for whom there is no memory has not c
   }
 }
 
-TEST_CASE("A turn in which memory is out throws nothing, ends one session at most, and time goes on") {
+TEST_CASE("A turn in which memory is out throws nothing, ends one session at most, and time goes on", "[hostile]") {
   Driven talk;
   long n = 0;
   for (bool failed = true; failed;) {
@@ -122,7 +122,7 @@ TEST_CASE("A turn in which memory is out throws nothing, ends one session at mos
   CHECK(n > 1);
 }
 
-TEST_CASE("A server whose memory is out while it welcomes a client serves the next one") {
+TEST_CASE("A server whose memory is out while it welcomes a client serves the next one", "[hostile]") {
   const spdlog::level::level_enum before = spdlog::get_level();
   spdlog::set_level(spdlog::level::off);
   ServerOptions options;

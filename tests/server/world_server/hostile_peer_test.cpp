@@ -89,7 +89,7 @@ int in_own_network(const std::function<int()>& test) {
 
 }  // namespace
 
-TEST_CASE("A robot whose client's machine answers no more stops, and drives on at the next command only") {
+TEST_CASE("A robot whose client's machine answers no more stops, and drives on at the next command only", "[hostile]") {
   for (const bool by_operator_option : {false, true}) {
     ServerOptions options = fast();
     if (by_operator_option) options.peer_silence_s = 0;
@@ -119,7 +119,8 @@ TEST_CASE("A robot whose client's machine answers no more stops, and drives on a
   }
 }
 
-TEST_CASE("A client that comes back takes the place of its old connection, robot and start pose included") {
+TEST_CASE("A client that comes back takes the place of its old connection, robot and start pose included",
+          "[hostile]") {
   Conversation talk;
   talk.send("CONTROL {Type Session} {Owner 5f2e}\r\nINIT {ClassName USARBot.P2DX}\r\n");
   const Eigen::Vector3d start = talk.truth().X_WB.p;
@@ -139,7 +140,8 @@ TEST_CASE("A client that comes back takes the place of its old connection, robot
   }
 }
 
-TEST_CASE("A client that is not placed at the first start pose, because it is taken, is told which it got") {
+TEST_CASE("A client that is not placed at the first start pose, because it is taken, is told which it got",
+          "[hostile]") {
   Conversation talk;
   talk.send("CONTROL {Type Session} {Period 0.01}\r\nINIT {ClassName USARBot.P2DX}\r\n");
   REQUIRE(talk.run(0.01));
@@ -157,7 +159,7 @@ TEST_CASE("A client that is not placed at the first start pose, because it is ta
   CHECK_FALSE(told("{Start start_01}"));
 }
 
-TEST_CASE("An owner's key is 1 to 64 bytes") {
+TEST_CASE("An owner's key is 1 to 64 bytes", "[hostile]") {
   Conversation talk;
   CHECK(talk.answer_to("CONTROL {Type Session} {Owner " + std::string(64, 'k') + "}\r\n").find("{Status OK}") !=
         std::string::npos);
@@ -167,7 +169,7 @@ TEST_CASE("An owner's key is 1 to 64 bytes") {
   }
 }
 
-TEST_CASE("The system is told to end a connection whose peer's machine is gone") {
+TEST_CASE("The system is told to end a connection whose peer's machine is gone", "[hostile]") {
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address = test::loopback(0);
   REQUIRE(::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
@@ -192,7 +194,7 @@ TEST_CASE("The system is told to end a connection whose peer's machine is gone")
   CHECK(unheard_of_s(-1) == 0);
 }
 
-TEST_CASE("The robot of a client whose network is gone stops, then leaves, and a living one's drives on") {
+TEST_CASE("The robot of a client whose network is gone stops, then leaves, and a living one's drives on", "[hostile]") {
   // A child that reports by its exit status: 0, or the number of the check that failed.
   const int status = in_own_network([] {
     ServedSimulation served;
@@ -228,7 +230,7 @@ TEST_CASE("The robot of a client whose network is gone stops, then leaves, and a
   CHECK(status == 0);
 }
 
-TEST_CASE("Clients that connect and are gone at once leave a server that answers the next") {
+TEST_CASE("Clients that connect and are gone at once leave a server that answers the next", "[hostile]") {
   ServedSimulation served;
   for (int i = 0; i < 200; ++i) {
     const int client = test::connect_to_loopback(served.port());
@@ -241,7 +243,7 @@ TEST_CASE("Clients that connect and are gone at once leave a server that answers
   }
 }
 
-TEST_CASE("Idle connections give way to a client when all are taken, and robots never do") {
+TEST_CASE("Idle connections give way to a client when all are taken, and robots never do", "[hostile]") {
   ServerOptions options;
   options.idle_s = 0;
   ServedSimulation served(options);
@@ -259,7 +261,7 @@ TEST_CASE("Idle connections give way to a client when all are taken, and robots 
   CHECK(with_robot.line_that_begins("PONG").starts_with("PONG {Id 1}"));
 }
 
-TEST_CASE("Connections that have just spoken do not give way") {
+TEST_CASE("Connections that have just spoken do not give way", "[hostile]") {
   ServerOptions options;
   options.idle_s = 3600;
   ServedSimulation served(options);

@@ -20,7 +20,7 @@ bool succeeds(Conversation& talk, const std::string& request) {
 
 }  // namespace
 
-TEST_CASE("Lines that are no messages are survived, and a client of nothing but them is let go") {
+TEST_CASE("Lines that are no messages are survived, and a client of nothing but them is let go", "[hostile]") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   for (const char* line : {"{", "}", "{}{}{}", "DRIVE {Left 1", "DRIVE }Left 1{", "GET / HTTP/1.1", "\x01\xff\xfe",
@@ -35,7 +35,8 @@ TEST_CASE("Lines that are no messages are survived, and a client of nothing but 
   CHECK(talk.session->close);
 }
 
-TEST_CASE("A web page's request, TLS and SSH are closed with one line in the log, and nothing in them is obeyed") {
+TEST_CASE("A web page's request, TLS and SSH are closed with one line in the log, and nothing in them is obeyed",
+          "[hostile]") {
   for (const std::string opening : {"POST / HTTP/1.1\r\nHost: localhost:3000\r\n\r\n", "\r\nGET /x HTTP/1.1\r\n",
                                     "BREW /pot HTTP/1.1\r\n", "\x16\x03\x01\x02", "SSH-2.0-OpenSSH_9.2\r\n"}) {
     for (const std::size_t piece : {std::size_t{1}, opening.size()}) {  // however it is cut
@@ -50,7 +51,7 @@ TEST_CASE("A web page's request, TLS and SSH are closed with one line in the log
   }
 }
 
-TEST_CASE("A thousand commands before INIT are one line in the log") {
+TEST_CASE("A thousand commands before INIT are one line in the log", "[hostile]") {
   const auto lines_logged = [](bool udk, std::string_view line) {
     Conversation talk(fast(udk));
     const WholeLog log;
@@ -67,7 +68,7 @@ TEST_CASE("A thousand commands before INIT are one line in the log") {
   CHECK(lines_logged(false, set) == 1);
 }
 
-TEST_CASE("A line without end is dropped, bounded in memory, and what follows it is understood") {
+TEST_CASE("A line without end is dropped, bounded in memory, and what follows it is understood", "[hostile]") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   const std::string much(100000, 'x');
@@ -77,7 +78,7 @@ TEST_CASE("A line without end is dropped, bounded in memory, and what follows it
   CHECK(talk.session->bad_lines == 1);
 }
 
-TEST_CASE("Commands for one frame are bounded") {
+TEST_CASE("Commands for one frame are bounded", "[hostile]") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\nCONTROL {Type Session} {Period 1}\r\n");
   REQUIRE(talk.run(0.001));
@@ -85,7 +86,7 @@ TEST_CASE("Commands for one frame are bounded") {
   CHECK(talk.session->deferred.size() <= 65536);
 }
 
-TEST_CASE("One packet of many requests is answered until too much waits, then its client is let go") {
+TEST_CASE("One packet of many requests is answered until too much waits, then its client is let go", "[hostile]") {
   Conversation talk;
   for (int i = 0; i < 1000; ++i) talk.send(box(i, 2.0 * i));
   REQUIRE(talk.simulation.objects.size() == 1000);
@@ -102,7 +103,8 @@ TEST_CASE("One packet of many requests is answered until too much waits, then it
   CHECK(talk.session->out.size() < 9 << 20);
 }
 
-TEST_CASE("Of a thousand boxes for one place 33 are made, also if they come by a move, or would at a reset") {
+TEST_CASE("Of a thousand boxes for one place 33 are made, also if they come by a move, or would at a reset",
+          "[hostile]") {
   for (const std::string& physics : {kLoose, std::string()}) {
     Conversation talk;
     talk.send("CONTROL {Type Session}\r\n");  // for the reasons
@@ -130,21 +132,22 @@ TEST_CASE("Of a thousand boxes for one place 33 are made, also if they come by a
   }
 }
 
-TEST_CASE("Boxes that only touch do not overlap, and a floor counts as one") {
+TEST_CASE("Boxes that only touch do not overlap, and a floor counts as one", "[hostile]") {
   Conversation talk;
   REQUIRE(
       succeeds(talk, "CONTROL {Type Create} {ClassName Box} {Name Floor} {Location 0,0,-0.1} {Scale 100,100,0.2}\r\n"));
   for (int i = 0; i < 50; ++i) CHECK(succeeds(talk, box(i, i, kLoose)));  // a row of cubes of a metre, face to face
 }
 
-TEST_CASE("A box that may move has at most 20 m, a fixed one a kilometre") {
+TEST_CASE("A box that may move has at most 20 m, a fixed one a kilometre", "[hostile]") {
   Conversation talk;
   CHECK(succeeds(talk, box(1, 0, kLoose + " {Scale 20,1,1}")));
   CHECK_FALSE(succeeds(talk, box(2, 0, kLoose + " {Scale 20.1,1,1}")));
   CHECK(succeeds(talk, box(3, 0, "{Scale 1000,1,1}")));
 }
 
-TEST_CASE("Requests that cost much wait for their client's next turn, in their order, and others do not wait") {
+TEST_CASE("Requests that cost much wait for their client's next turn, in their order, and others do not wait",
+          "[hostile]") {
   Conversation talk;
   Session& other = talk.simulation.connect("other");
   std::string packet = "CONTROL {Type Pause}\r\n";
@@ -164,14 +167,14 @@ TEST_CASE("Requests that cost much wait for their client's next turn, in their o
   CHECK(answers.size() == 701);
 }
 
-TEST_CASE("A name from outside cannot break an answer's grammar, nor fill it") {
+TEST_CASE("A name from outside cannot break an answer's grammar, nor fill it", "[hostile]") {
   Conversation talk;
   const std::string answer = talk.answer_to("SET {Type \x01\x02} {Name " + std::string(5000, 'n') + "}\r\n");
   CHECK(answer.size() < 300);
   CHECK(answer.find('\x01') == std::string::npos);
 }
 
-TEST_CASE("Random verbs with random values neither stop the world nor make it anything but finite") {
+TEST_CASE("Random verbs with random values neither stop the world nor make it anything but finite", "[hostile]") {
   std::mt19937 random(5);
   const auto pick = [&](std::initializer_list<const char*> words) { return words.begin()[random() % words.size()]; };
   Conversation talk;
