@@ -111,7 +111,7 @@ struct CanTransport::Session {
   std::optional<DriveTargets> targets;
   // beats and late orders during the opening: reported with the first state after it
   std::uint32_t before = 0, late_before = 0;
-  bool lost = false;
+  bool lost = true;  // until all drives are enabled there is nothing to stop in an orderly way
   std::atomic<double> round_trip_s = 0;
 };
 
@@ -129,7 +129,6 @@ hrt::Connection CanTransport::open(const hrt_config& config) {
 hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
-  s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   check_real_time(s.robot);
   if (s.robot.realtime_priority) {
     s.of_opener = scheduling_of_caller();
