@@ -117,6 +117,7 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
       belt_a_(meeting.surface_a->belt),
       belt_b_(meeting.surface_b->belt),
       inverse_mass_a_(a_.body->inverse_mass),
+      fading_(meeting.warm_start_share),
       stretch_(touch.stretch),
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       collider_a_(meeting.collider_a),
@@ -201,15 +202,9 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   const btScalar largest = (s11 + s22) / 2 + std::sqrt(difference * difference + s12 * s12);
   slide_step_ = 1 / largest * mu_;
 
-  // The last step's impulses to start from. Where a contact slid, the slip gives its friction; where it stuck, a part
-  // of it may be a pull of belts against each other, which fades.
-  constexpr btScalar kSlid = 0.999;  // of the limit
+  // The last step's impulses to start from.
   normal_impulse_ = *touch.stored_impulse[0];
   friction_impulse_ = Two{*touch.stored_impulse[1], *touch.stored_impulse[2]};
-  const Two scaled = friction_impulse_ * inverse_mu_;
-  const btScalar limit = kSlid * normal_impulse_;
-  if (stretch_.to <= 0 && scaled[0] * scaled[0] + scaled[1] * scaled[1] < limit * limit)
-    friction_impulse_ *= meeting.warm_start_share;
 }
 
 // Of two arms of one body: what the two rows do to the body is their difference, in A's; their levers stay apart.
@@ -305,13 +300,13 @@ template <bool kOnGround, bool kSomeShear>
       std::max(normal_impulse_ - (velocity - give_velocity_ + softness_ * normal_impulse_) * mass, btScalar(0));
   const btScalar normal_change = normal - normal_impulse_;
   if (normal <= 0 && normal_impulse_ <= 0 && friction_impulse_[0] == 0 && friction_impulse_[1] == 0)
-    return {0, Two{0, 0}};
+    return {0, Two{0, 0}, Two{0, 0}};
 
   // Friction: the slip with the normal's change and the belts' speeds in it.
-  Two friction{0, 0};
+  Two friction{0, 0}, slip{0, 0};
   if (normal > 0) {
     const Two along = dot(rows_a_.row[1], a.delta), across = dot(rows_a_.row[2], a.delta);
-    Two slip = slip_ + Two{along[0], across[0]} + Two{along[1], across[1]} + rows_a_.levers * rate_a;
+    slip = slip_ + Two{along[0], across[0]} + Two{along[1], across[1]} + rows_a_.levers * rate_a;
     if (b_moves) {
       const TwoVectors& delta_b = b_.body->delta;
       slip -= Two{sum_of_lanes(dot(rows_b_.row[1], delta_b)), sum_of_lanes(dot(rows_b_.row[2], delta_b))};
@@ -323,13 +318,14 @@ template <bool kOnGround, bool kSomeShear>
     friction =
         kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal, share) : coulomb_friction(share * slip, normal);
   }
-  return {normal_change, friction - friction_impulse_};
+  return {normal_change, friction - friction_impulse_, slip};
 }
 
 template <bool kOnGround>
 [[gnu::always_inline]] inline void Contact::make(const Change& change, const Moved& a) {
   normal_impulse_ += change.normal;
   friction_impulse_ += change.friction;
+  last_slip_ = change.slip;
   apply<kOnGround>(a, change.normal, change.friction);
 }
 
@@ -411,6 +407,15 @@ btScalar Contact::share(std::span<Contact> contacts, bool some_shear, std::vecto
 void Contact::count() const {
   ++a_.body->contact_count;
   if (b_.body) ++b_.body->contact_count;
+}
+
+void Contact::fade_and_keep_impulses() const {
+  constexpr btScalar kSlides_mps = 1e-4;  // as far as a belt that turns has kStanding_mps of shear.cpp
+  const bool slides = last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] > kSlides_mps * kSlides_mps;
+  const btScalar left = slides ? 1 : fading_;
+  *stored_impulse_[0] = normal_impulse_;
+  *stored_impulse_[1] = left * friction_impulse_[0];
+  *stored_impulse_[2] = left * friction_impulse_[1];
 }
 
 void Contact::keep_impulses() const {

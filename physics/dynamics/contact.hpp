@@ -32,7 +32,7 @@ struct Meeting {
   // without a belt.
   btVector3 belt_axis_a, belt_axis_b;
   btScalar driving_a, driving_b;
-  btScalar warm_start_share;  // of the last step's friction impulse that a contact which stuck starts from
+  btScalar warm_start_share;  // of its friction impulse that a contact which sticks leaves to the next step
 
   Meeting(const btCollisionObject& a, const btCollisionObject& b, const ContactSide& moves_a,
           const ContactSide& moves_b, const Surface& on_a, const Surface& on_b);
@@ -54,9 +54,9 @@ class Contact {
   void warm_start();
   // Counts it as one of its bodies' contacts (ArticulatedBody::contact_count).
   void count() const;
-  struct Change {  // of the impulses
+  struct Change {  // of the impulses, with the slip that called for it
     btScalar normal;
-    Two friction;
+    Two friction, slip;
   };
   // An iteration in which each contact moves an equal share of its body's mass, all by the same velocities (mass
   // splitting: Tonge, Benevolenski, Voroshilov, "Mass splitting for jitter-free parallel rigid body simulation", 2012).
@@ -66,8 +66,11 @@ class Contact {
   // One iteration over contacts in their order, each with what those before it have left. Returns the largest squared
   // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
-  // Writes the impulses to where they were taken from, for the next step or to make the contact anew in this one.
+  // Writes the impulses to where they were taken from, to make the contact anew in this step.
   void keep_impulses() const;
+  // The same for the next step. Where the contact slides, its slip gives its friction; where it sticks, a part of it
+  // may be a pull of belts against each other, which fades.
+  void fade_and_keep_impulses() const;
 
   const Collider& collider_a() const { return *collider_a_; }
   const Collider& collider_b() const { return *collider_b_; }
@@ -129,6 +132,8 @@ class Contact {
   // Friction quantities: along in lane 0, across in lane 1.
   btScalar normal_impulse_;
   Two friction_impulse_;
+  Two last_slip_{0, 0};       // before the last change
+  btScalar fading_;           // the share of a friction that sticks which is left for the next step
   btScalar normal_velocity_;  // before any impulse of this step
   Two slip_;
   btScalar normal_mobility_, normal_mass_, softness_, give_velocity_;

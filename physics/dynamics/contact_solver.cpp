@@ -49,7 +49,7 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, dispatcher, info);
 
   // Impulses to where the next step finds them, velocities to Bullet.
-  for (const Contact& contact : contacts_) contact.keep_impulses();
+  for (const Contact& contact : contacts_) contact.fade_and_keep_impulses();
   for (const auto& [belt, body] : belts_) finish_step(*belt);
   for (const ArticulatedBody& body : bodies_) write_back(body);
 }
@@ -213,11 +213,8 @@ bool ContactSolver::settle_motors(std::size_t group) {
 void ContactSolver::make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step) {
   const std::span<Contact> contacts = contacts_of(group);
   for (const Contact& contact : contacts) contact.keep_impulses();
-  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i) {
-    Belt& belt = *belts_[belts_by_group_.all()[i]].belt;
-    belt.warm_start_share = 1;  // nothing fades a second time
-    begin_anew(belt);
-  }
+  for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
+    begin_anew(*belts_[belts_by_group_.all()[i]].belt);
   for (std::size_t i = bodies_by_group_.begin_of(group); i < bodies_by_group_.end_of(group); ++i)
     begin_anew(bodies_[bodies_by_group_.all()[i]]);
   contacts_anew_.clear();
