@@ -164,10 +164,7 @@ function(kenaf_test_settings name)
   endif()
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ALONE]): one Catch2 program;
-# ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
-# [long]), and starts those of the highest cost first. The cases of files whose names begin with hostile also have the
-# label hostile, by their tag [hostile].
+# kenaf_check_hostile(SOURCE): each test case of the file has the tag [hostile].
 function(kenaf_check_hostile source)
   file(READ ${source} text)
   string(REGEX MATCHALL "TEST_CASE\\(" cases "${text}")
@@ -179,6 +176,10 @@ function(kenaf_check_hostile source)
   endif()
 endfunction()
 
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ALONE]): one Catch2 program;
+# ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
+# [long]), and starts those of the highest cost first. The cases of files whose names begin with hostile also have the
+# label hostile, by their tag [hostile].
 function(kenaf_test name)
   cmake_parse_arguments(TEST "ALONE" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_COST)

@@ -1,6 +1,5 @@
 #include "physics/dynamics/articulated_body.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace kenaf::physics {
@@ -140,12 +139,7 @@ void begin_anew(ArticulatedBody& body) {
 
 bool settle_servos(ArticulatedBody& body) {
   bool changed = false;
-  for (const Arm& arm : body.arms) {
-    LimitedDrive& servo = arm.joint->servo;
-    const LimitedDrive::Limit limit = limit_by(servo, rate_now(body, arm), impulse_to_hold(body, arm));
-    changed = changed || limit != servo.limit;
-    servo.limit = limit;
-  }
+  for (const Arm& arm : body.arms) changed |= settle(arm.joint->servo, rate_now(body, arm), impulse_to_hold(body, arm));
   return changed;
 }
 

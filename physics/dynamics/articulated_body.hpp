@@ -54,10 +54,7 @@ struct ArticulatedBody {
   TwoVectors response(const TwoVectors& impulse) const {
     const btVector3 linear = vector_of(impulse, 0) * inverse_mass, angular = inverse_inertia_W * vector_of(impulse, 1);
     TwoVectors change = side_by_side(linear, angular);
-    for (std::size_t i = 0; i < loose_count; ++i) {
-      const Two parts = dot(loose[i], impulse);
-      change += loose[i] * (parts[0] + parts[1]);
-    }
+    for (std::size_t i = 0; i < loose_count; ++i) change += loose[i] * sum_of_lanes(dot(loose[i], impulse));
     return change;
   }
 };

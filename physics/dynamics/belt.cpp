@@ -67,11 +67,7 @@ double solve_friction(Belt& belt) {
 }
 
 bool settle_motor(Belt& belt) {
-  if (belt.prescribed) return false;
-  const LimitedDrive::Limit limit = limit_by(belt.motor, belt.solved_mps(), impulse_to_hold(belt));
-  const bool changed = limit != belt.motor.limit;
-  belt.motor.limit = limit;
-  return changed;
+  return !belt.prescribed && settle(belt.motor, belt.solved_mps(), impulse_to_hold(belt));
 }
 
 void finish_step(Belt& belt) {

@@ -409,19 +409,16 @@ void Contact::count() const {
   if (b_.body) ++b_.body->contact_count;
 }
 
-void Contact::fade_and_keep_impulses() const {
-  constexpr btScalar kSlides_mps = 1e-4;  // as far as a belt that turns has kStanding_mps of shear.cpp
-  const bool slides = last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] > kSlides_mps * kSlides_mps;
-  const btScalar left = slides ? 1 : fading_;
+void Contact::keep_impulses(btScalar friction_share) const {
   *stored_impulse_[0] = normal_impulse_;
-  *stored_impulse_[1] = left * friction_impulse_[0];
-  *stored_impulse_[2] = left * friction_impulse_[1];
+  *stored_impulse_[1] = friction_share * friction_impulse_[0];
+  *stored_impulse_[2] = friction_share * friction_impulse_[1];
 }
 
-void Contact::keep_impulses() const {
-  *stored_impulse_[0] = normal_impulse_;
-  *stored_impulse_[1] = friction_impulse_[0];
-  *stored_impulse_[2] = friction_impulse_[1];
+void Contact::fade_and_keep_impulses() const {
+  constexpr btScalar kSlides_mps = 1e-4;  // as kStanding_mps of shear.cpp
+  const bool slides = last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] > kSlides_mps * kSlides_mps;
+  keep_impulses(slides ? 1 : fading_);
 }
 
 }  // namespace kenaf::physics

@@ -67,7 +67,7 @@ class Contact {
   // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
   // Writes the impulses to where they were taken from, to make the contact anew in this step.
-  void keep_impulses() const;
+  void keep_impulses(btScalar friction_share = 1) const;
   // The same for the next step. Where the contact slides, its slip gives its friction; where it sticks, a part of it
   // may be a pull of belts against each other, which fades.
   void fade_and_keep_impulses() const;

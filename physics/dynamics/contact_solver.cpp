@@ -1,7 +1,6 @@
 #include "physics/dynamics/contact_solver.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace kenaf::physics {
 namespace {
@@ -167,8 +166,8 @@ std::span<Contact> ContactSolver::contacts_of(std::size_t group) {
 // group begins anew with the impulses that it has.
 void ContactSolver::solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info) {
   constexpr int kIterationsToLook = 3;
-  constexpr int kShared =
-      4;  // iterations; left and right track pull alike within 1 % then, as a rest of the pull is left
+  // So many iterations, and left and right track pull alike within 1 %.
+  constexpr int kShared = 4;
   constexpr int kMostTimesAnew = 8;
   solve_friction_of_belts(group);
   if (settle_motors(group)) make_anew(group, dispatcher, info.m_timeStep);

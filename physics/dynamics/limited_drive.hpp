@@ -60,4 +60,11 @@ inline LimitedDrive::Limit limit_by(const LimitedDrive& drive, btScalar speed, b
   return impulse < drive.low ? Limit::low : impulse > drive.high ? Limit::high : Limit::none;
 }
 
+// Takes the drive to that limit. Returns whether it was at another one.
+inline bool settle(LimitedDrive& drive, btScalar speed, btScalar to_hold) {
+  const LimitedDrive::Limit before = drive.limit;
+  drive.limit = limit_by(drive, speed, to_hold);
+  return drive.limit != before;
+}
+
 }  // namespace kenaf::physics
