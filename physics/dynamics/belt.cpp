@@ -16,10 +16,8 @@ double most_friction_ns(const Belt& belt) {
 }
 
 double impulse_to_hold(const Belt& belt) {
-  const double for_gear_ns = belt.prescribed ? 0
-                                             : belt.moving_mass_kg * (belt.motor.target - belt.start_mps) +
-                                                   belt.viscous_ns * belt.motor.target;
-  return for_gear_ns - belt.push_ns;
+  return belt.moving_mass_kg * (belt.motor.target - belt.start_mps) + belt.viscous_ns * belt.motor.target -
+         belt.push_ns;
 }
 
 }  // namespace
@@ -30,7 +28,6 @@ void start_step(Belt& belt, double time_step_s) {
   belt.warm_start_share = std::exp(-time_step_s * (std::abs(belt.speed_mps) / kRenewal_m + 1 / kCreep_s));
   if (std::abs(belt.friction_impulse_ns) < kSlid * most_friction_ns(belt))
     belt.friction_impulse_ns *= belt.warm_start_share;
-  if (belt.prescribed) belt.friction_impulse_ns = 0;
   belt.start_mps = belt.speed_mps;
   belt.viscous_ns = belt.viscous_nspm * time_step_s;
   begin_anew(belt);
@@ -41,14 +38,13 @@ void begin_anew(Belt& belt) {
   belt.push_ns = belt.friction_impulse_ns;
   belt.mobility_per_kg = 0;
   belt.base_mps = belt.motor.target;
-  if (belt.prescribed || belt.motor.holds()) return;
+  if (belt.motor.holds()) return;
   const YieldingDrive motor = yielding(belt.motor);
   belt.mobility_per_kg = 1 / (belt.moving_mass_kg + belt.viscous_ns + motor.inertia);
   belt.base_mps = belt.mobility_per_kg * (belt.moving_mass_kg * belt.start_mps + motor.momentum);
 }
 
 double solve_friction(Belt& belt) {
-  if (belt.prescribed) return 0;
   // The impulse that stops the belt, within its limit; against a motor that holds, all of it. With a limit of 0 too if
   // there is an impulse, of the last step or of an earlier iteration: that one has to go. The load is a sum of changes,
   // which rounding may leave below 0.
@@ -67,13 +63,12 @@ double solve_friction(Belt& belt) {
 }
 
 bool settle_motor(Belt& belt) {
-  return !belt.prescribed && settle(belt.motor, belt.solved_mps(), impulse_to_hold(belt));
+  return settle(belt.motor, belt.solved_mps(), impulse_to_hold(belt));
 }
 
 void finish_step(Belt& belt) {
   belt.speed_mps = belt.solved_mps();
-  belt.motor_impulse_ns =
-      belt.prescribed ? impulse_to_hold(belt) : given_impulse(belt.motor, belt.speed_mps, impulse_to_hold(belt));
+  belt.motor_impulse_ns = given_impulse(belt.motor, belt.speed_mps, impulse_to_hold(belt));
 }
 
 }  // namespace kenaf::physics

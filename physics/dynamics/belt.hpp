@@ -12,7 +12,6 @@ namespace kenaf::physics {
 struct Belt {
   // Set before a step.
   double moving_mass_kg = 1;
-  bool prescribed = false;  // the belt has the motor's target speed, whatever pushes on it
   LimitedDrive motor;
   double dry_friction_ns = 0;     // of the running gear, within a step
   double viscous_nspm = 0;        // of the running gear

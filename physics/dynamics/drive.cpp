@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/dynamics/battery.hpp"
 
@@ -9,6 +10,7 @@ namespace kenaf::physics {
 namespace {
 
 constexpr double kTurning_mps = 0.01;  // above this speed the motor's own friction is full
+constexpr double kAnyImpulse_ns = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -18,14 +20,17 @@ TrackDrive::TrackDrive(robot::Track side, const TrackDriveDescription& drive, co
       droop_mpspn_(effects.drive_droop_mpspn),
       dry_friction_n_(effects.drive_coulomb_n +
                       (side == robot::kLeft ? effects.drive_coulomb_left_n : effects.drive_coulomb_right_n)),
-      viscous_nspm_(effects.drive_viscous_nspm) {
+      viscous_nspm_(effects.drive_viscous_nspm),
+      rolling_resistance_(effects.rolling_resistance) {
   drive_.max_force_n *= effects.drive_torque_scale;
 }
 
 void TrackDrive::prescribe(Belt& belt, double speed_mps) {
+  // A motor of any strength on a belt without mass and friction.
   turn_at(speed_mps);
-  belt.prescribed = true;
-  belt.speed_mps = belt.motor.target = speed_mps;
+  belt.speed_mps = speed_mps;
+  belt.motor = {.target = speed_mps, .low = -kAnyImpulse_ns, .high = kAnyImpulse_ns};
+  belt.moving_mass_kg = belt.dry_friction_ns = belt.viscous_nspm = belt.rolling_resistance = 0;
 }
 
 void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s) {
@@ -43,13 +48,13 @@ void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_sh
   const double braking_n = drive_.max_force_n * voltage_share;
   const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
   belt.moving_mass_kg = drive_.moving_mass_kg;
-  belt.prescribed = false;
   belt.motor.target = reference_mps_;
   belt.motor.softness = droop_mpspn_ / time_step_s;
   belt.motor.high = (u > 0 ? driving_n : braking_n) * time_step_s;
   belt.motor.low = -(u < 0 ? driving_n : braking_n) * time_step_s;
   belt.dry_friction_ns = dry_friction_n_ * time_step_s;
   belt.viscous_nspm = viscous_nspm_;
+  belt.rolling_resistance = rolling_resistance_;
 }
 
 double TrackDrive::current_a(const Belt& belt, double time_step_s) const {

@@ -33,7 +33,7 @@ class TrackDrive {
 
  private:
   TrackDriveDescription drive_;  // with the effects on it
-  double lag_s_, droop_mpspn_, dry_friction_n_, viscous_nspm_;
+  double lag_s_, droop_mpspn_, dry_friction_n_, viscous_nspm_, rolling_resistance_;
   double lagged_mps_ = 0;     // the command after the second lag
   double reference_mps_ = 0;  // the motor's set speed
   double travel_m_ = 0;

@@ -67,7 +67,6 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
-    belt.rolling_resistance = description.effects.rolling_resistance;
     belt.slip_spm = description.effects.slip_with_speed_spm;
   }
   make_hull(id);
