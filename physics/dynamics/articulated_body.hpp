@@ -48,7 +48,7 @@ struct ArticulatedBody {
   std::array<TwoVectors, robot::kFlipperCount> loose;  // u of each arm whose servo yields
   std::size_t loose_count = 0;
   btRigidBody* base;
-  int contact_count = 0;
+  int contact_count = 0;  // that may press in this step
 
   // The velocity change at C by an impulse with these components: linear, and moment about C.
   TwoVectors response(const TwoVectors& impulse) const {

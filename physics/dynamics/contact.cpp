@@ -390,7 +390,8 @@ btScalar Contact::share_each(std::span<Contact> contacts, std::span<Change> chan
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
     const Moved place = contact.in_place(none);
-    const int sharing = std::max(contact.a_.body->contact_count, contact.b_.body ? contact.b_.body->contact_count : 0);
+    const int sharing =
+        std::max({contact.a_.body->contact_count, contact.b_.body ? contact.b_.body->contact_count : 0, 1});
     changes[i] = contact.on_ground() ? contact.wanted_change<true, kSomeShear>(place, 1.0 / sharing)
                                      : contact.wanted_change<false, kSomeShear>(place, 1.0 / sharing);
     residual = std::max(residual, contact.residual_of(changes[i]) * sharing * sharing);
@@ -405,20 +406,41 @@ btScalar Contact::share(std::span<Contact> contacts, bool some_shear, std::vecto
 }
 
 void Contact::count() const {
+  if (normal_impulse_ <= 0 && normal_velocity_ >= give_velocity_) return;
   ++a_.body->contact_count;
   if (b_.body) ++b_.body->contact_count;
 }
 
-void Contact::keep_impulses(btScalar friction_share) const {
+void Contact::keep_impulses() const {
   *stored_impulse_[0] = normal_impulse_;
-  *stored_impulse_[1] = friction_share * friction_impulse_[0];
-  *stored_impulse_[2] = friction_share * friction_impulse_[1];
+  *stored_impulse_[1] = friction_impulse_[0];
+  *stored_impulse_[2] = friction_impulse_[1];
 }
 
-void Contact::fade_and_keep_impulses() const {
+bool Contact::sticks() const {
   constexpr btScalar kSlides_mps = 1e-4;  // as kStanding_mps of shear.cpp
-  const bool slides = last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] > kSlides_mps * kSlides_mps;
-  keep_impulses(slides ? 1 : fading_);
+  return pressed() && last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] <= kSlides_mps * kSlides_mps;
+}
+
+void Contact::fade() {
+  friction_impulse_ *= Two{fading_, fading_};
+}
+
+bool Contact::moves_base_alone() const {
+  return on_ground() && (!a_.arm || a_.arm->mobility == 0) && (!belt_a_ || belt_a_->mobility_per_kg == 0);
+}
+
+void Contact::lose_to(FrictionCreep& creep) const {
+  creep.lose({rows_a_.row[1], rows_a_.row[2]}, (1 - fading_) * friction_impulse_, normal_impulse_);
+}
+
+void Contact::add_spring_to(FrictionCreep& creep) const {
+  creep.add_spring({rows_a_.row[1], rows_a_.row[2]}, normal_impulse_);
+}
+
+void Contact::take_back(const TwoVectors& given_back) {
+  friction_impulse_ += normal_impulse_ * Two{sum_of_lanes(dot(rows_a_.row[1], given_back)),
+                                             sum_of_lanes(dot(rows_a_.row[2], given_back))};
 }
 
 }  // namespace kenaf::physics

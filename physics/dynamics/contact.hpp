@@ -7,6 +7,7 @@
 
 #include "physics/dynamics/articulated_body.hpp"
 #include "physics/dynamics/bullet.hpp"
+#include "physics/dynamics/friction_creep.hpp"
 #include "physics/dynamics/shear.hpp"
 #include "physics/dynamics/surface.hpp"
 
@@ -52,7 +53,7 @@ class Contact {
   Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
   void warm_start();
-  // Counts it as one of its bodies' contacts (ArticulatedBody::contact_count).
+  // Counts it for its bodies (ArticulatedBody::contact_count), if it presses or would without the others.
   void count() const;
   struct Change {  // of the impulses, with the slip that called for it
     btScalar normal;
@@ -67,11 +68,19 @@ class Contact {
   // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
   // Writes the impulses to where they were taken from, to make the contact anew in this step.
-  void keep_impulses(btScalar friction_share = 1) const;
-  // The same for the next step. Where the contact slides, its slip gives its friction; where it sticks, a part of it
-  // may be a pull of belts against each other, which fades.
-  void fade_and_keep_impulses() const;
+  void keep_impulses() const;
+  // After the last iteration. Where the contact slides, its slip gives its friction; where it sticks, its friction
+  // fades.
+  bool sticks() const;
+  void fade();
+  // Whether its friction moves A's base and nothing else: a belt or an arm that yields would take a part.
+  bool moves_base_alone() const;
+  // Of such a contact: what it loses, to be called before it fades; its part in giving back; and what it gets.
+  void lose_to(FrictionCreep& creep) const;
+  void add_spring_to(FrictionCreep& creep) const;
+  void take_back(const TwoVectors& given_back);
 
+  const ArticulatedBody* body_a() const { return a_.body; }
   const Collider& collider_a() const { return *collider_a_; }
   const Collider& collider_b() const { return *collider_b_; }
   // Of the robots that these belong to.

@@ -48,7 +48,8 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, dispatcher, info);
 
   // Impulses to where the next step finds them, velocities to Bullet.
-  for (const Contact& contact : contacts_) contact.fade_and_keep_impulses();
+  let_friction_creep();
+  for (const Contact& contact : contacts_) contact.keep_impulses();
   for (const auto& [belt, body] : belts_) finish_step(*belt);
   for (const ArticulatedBody& body : bodies_) write_back(body);
 }
@@ -176,7 +177,7 @@ void ContactSolver::solve_group(std::size_t group, btDispatcher& dispatcher, con
     const bool solved = iterate(group, i <= kShared ? Iteration::shared : Iteration::one_by_one) <=
                         info.m_leastSquaresResidualThreshold;
     const bool look = solved || i == info.m_numIterations || i % kIterationsToLook == 0;
-    if (look && settle_motors(group) && times_anew < kMostTimesAnew) {
+    if (look && times_anew < kMostTimesAnew && settle_motors(group)) {
       make_anew(group, dispatcher, info.m_timeStep);
       ++times_anew;
       i = 0;
@@ -220,6 +221,31 @@ void ContactSolver::make_anew(std::size_t group, btDispatcher& dispatcher, btSca
   add_contacts(group, dispatcher, time_step, contacts_anew_);
   std::ranges::copy(contacts_anew_, contacts.begin());
   for (Contact& contact : contacts) contact.warm_start();
+}
+
+void ContactSolver::let_friction_creep() {
+  creeps_.assign(bodies_.size(), {});
+  const auto creep_of = [&](const Contact& contact) -> FrictionCreep& {
+    return creeps_[static_cast<std::size_t>(contact.body_a() - bodies_.data())];
+  };
+  const auto each_held = [&](const auto& use) {
+    for (Contact& contact : contacts_)
+      if (contact.sticks() && contact.moves_base_alone()) use(contact, creep_of(contact));
+  };
+
+  each_held([](Contact& contact, FrictionCreep& creep) { contact.lose_to(creep); });
+  for (Contact& contact : contacts_)
+    if (contact.sticks()) contact.fade();
+  if (std::ranges::none_of(creeps_, &FrictionCreep::matters)) return;
+
+  each_held([](Contact& contact, FrictionCreep& creep) {
+    if (creep.matters()) contact.add_spring_to(creep);
+  });
+  given_back_.clear();
+  for (const FrictionCreep& creep : creeps_) given_back_.push_back(creep.matters() ? creep.given_back() : TwoVectors{});
+  each_held([&](Contact& contact, const FrictionCreep& creep) {
+    contact.take_back(given_back_[static_cast<std::size_t>(&creep - creeps_.data())]);
+  });
 }
 
 void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to) {

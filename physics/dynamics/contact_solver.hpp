@@ -61,6 +61,7 @@ class ContactSolver {
   bool settle_motors(std::size_t group);               // of belts, and servos
   // Bodies, belts and contacts of the group for motors at other limits, with the contacts' impulses as they are.
   void make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step);
+  void let_friction_creep();  // friction_creep.hpp, by all contacts
   std::span<Contact> contacts_of(std::size_t group);
   void add_contacts(std::size_t group, btDispatcher& dispatcher, btScalar time_step, std::vector<Contact>& to);
   void add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to);
@@ -81,6 +82,8 @@ class ContactSolver {
   // Group by group.
   std::vector<Contact> contacts_, contacts_anew_;
   std::vector<Contact::Change> changes_;
+  std::vector<FrictionCreep> creeps_;  // of each of bodies_
+  std::vector<TwoVectors> given_back_;
   bool some_shear_ = false;                // of contacts_
   std::vector<std::size_t> contacts_end_;  // of each group
 };

@@ -58,6 +58,28 @@ TEST_CASE("A robot without a command stays where it is") {
   CHECK((world.truth(id).X_WB.p - before.p).norm() < 1e-4);
 }
 
+// It leans with its tracks on the edge of a step. By symmetry each of them holds half, and nothing that creeps lets one
+// take over: what they pull against each other is gone 1 / e^(6 / 0.5) after 6 s. What stays is of normal forces, which
+// differ by as little as the robot is turned.
+TEST_CASE("Both tracks hold alike a robot that rests against a step") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({1, 4, 0.2}, {1.5, 0, 0.1}));
+  World world(description, {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 5);
+  world.set_command(id, drive(0, 0));
+  run(world, 1);
+  const Pose before = world.truth(id).X_WB;
+  REQUIRE(roll_pitch_yaw(before.q).y() < -0.3);
+  run(world, 6);
+  const RobotTruth truth = world.truth(id);
+  const double left_n = truth.track_force_n[robot::kLeft], right_n = truth.track_force_n[robot::kRight];
+  CHECK(left_n + right_n > 20);
+  CHECK(left_n / right_n == Approx(1).margin(0.02));
+  CHECK((truth.X_WB.p - before.p).norm() < 1e-6);
+}
+
 // 20 kg and two belts of 1.5 kg. Friction across could hold a robot straight whose left track pulls alone, too.
 TEST_CASE("Both tracks pull alike while a robot speeds up, slows down and climbs a slope") {
   for (const double slope_rad : {0.0, 0.2}) {
