@@ -239,7 +239,7 @@ template <bool kOnGround>
 }
 
 void Contact::warm_start() {
-  Nothing none;
+  State none;
   apply<false>(in_place(none), normal_impulse_, friction_impulse_);
 }
 
@@ -335,7 +335,7 @@ btScalar Contact::residual_of(const Change& change) const {
   return (change.normal * change.normal + squares[0] + squares[1]) * inverse_mass_a_ * inverse_mass_a_;
 }
 
-Contact::Moved Contact::in_place(Nothing& none) const {
+Contact::Moved Contact::in_place(State& none) const {
   return {.delta = a_.body->delta,
           .arm_nms = a_.arm ? a_.arm->push_nms : none.arm_nms,
           .belt_ns = belt_a_ ? belt_a_->push_ns : none.belt_ns,
@@ -344,37 +344,46 @@ Contact::Moved Contact::in_place(Nothing& none) const {
           .belt_mobility = belt_a_ ? belt_a_->mobility_per_kg : 0};
 }
 
+// The contacts at the front that move the same things, on fixed ground.
+std::span<Contact> Contact::run_at_front(std::span<Contact> contacts) {
+  const Contact& first = contacts.front();
+  std::size_t count = 1;
+  while (count < contacts.size() && contacts[count].on_ground() && contacts[count].a_.body == first.a_.body &&
+         contacts[count].a_.arm == first.a_.arm && contacts[count].belt_a_ == first.belt_a_)
+    ++count;
+  return contacts.first(count);
+}
+
 template <bool kSomeShear>
 btScalar Contact::solve_each(std::span<Contact> contacts) {
   btScalar residual = 0;
-  Nothing none;
-  for (auto next = contacts.begin(); next != contacts.end();) {
-    const Contact& first = *next;
+  State none;
+  while (!contacts.empty()) {
+    Contact& first = contacts.front();
     const Moved place = first.in_place(none);
     // Between moving things: one at a time, in place.
     if (!first.on_ground()) {
-      const Change change = next->wanted_change<false, kSomeShear>(place, 1);
-      next->make<false>(change, place);
-      residual = std::max(residual, next->residual_of(change));
-      ++next;
+      const Change change = first.wanted_change<false, kSomeShear>(place, 1);
+      first.make<false>(change, place);
+      residual = std::max(residual, first.residual_of(change));
+      contacts = contacts.subspan(1);
       continue;
     }
-    // The contacts of one body on fixed ground: A's state stays in registers from contact to contact. Through memory,
-    // the computation of a time step is 3 % slower.
-    TwoVectors delta = place.delta;
-    btScalar arm_nms = place.arm_nms, belt_ns = place.belt_ns, load_ns = place.load_ns;
-    const Moved kept{delta, arm_nms, belt_ns, load_ns, place.arm_mobility, place.belt_mobility};
-    for (; next != contacts.end() && next->on_ground() && next->a_.body == first.a_.body &&
-           next->a_.arm == first.a_.arm && next->belt_a_ == first.belt_a_;
-         ++next) {
-      const Change change = next->wanted_change<true, kSomeShear>(kept, 1);
-      next->make<true>(change, kept);
-      residual = std::max(residual, next->residual_of(change));
+    // On fixed ground A's state stays in registers from contact to contact. Through memory, the computation of a time
+    // step is 3 % slower.
+    const std::span<Contact> run = run_at_front(contacts);
+    State state{place.delta, place.arm_nms, place.belt_ns, place.load_ns};
+    const Moved kept = moved(state, place);
+    for (Contact& contact : run) {
+      const Change change = contact.wanted_change<true, kSomeShear>(kept, 1);
+      contact.make<true>(change, kept);
+      residual = std::max(residual, contact.residual_of(change));
     }
-    place.delta = delta;
-    place.arm_nms = arm_nms;
-    place.belt_ns = belt_ns;
-    place.load_ns = load_ns;
+    place.delta = state.delta;
+    place.arm_nms = state.arm_nms;
+    place.belt_ns = state.belt_ns;
+    place.load_ns = state.load_ns;
+    contacts = contacts.subspan(run.size());
   }
   return residual;
 }
@@ -384,25 +393,53 @@ btScalar Contact::solve(std::span<Contact> contacts, bool some_shear) {
 }
 
 template <bool kSomeShear>
-btScalar Contact::share_each(std::span<Contact> contacts, std::span<Change> changes) {
+btScalar Contact::share_each(std::span<Contact> contacts, SharedChanges& changes) {
   btScalar residual = 0;
-  Nothing none;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Contact& contact = contacts[i];
-    const Moved place = contact.in_place(none);
-    const int sharing =
-        std::max({contact.a_.body->contact_count, contact.b_.body ? contact.b_.body->contact_count : 0, 1});
-    changes[i] = contact.on_ground() ? contact.wanted_change<true, kSomeShear>(place, 1.0 / sharing)
-                                     : contact.wanted_change<false, kSomeShear>(place, 1.0 / sharing);
-    residual = std::max(residual, contact.residual_of(changes[i]) * sharing * sharing);
+  State none;
+  changes.runs.clear();
+  changes.between_moving.clear();
+  while (!contacts.empty()) {
+    Contact& first = contacts.front();
+    const Moved place = first.in_place(none);
+    if (!first.on_ground()) {
+      const int sharing = std::max({first.a_.body->contact_count, first.b_.body ? first.b_.body->contact_count : 0, 1});
+      const Change change = first.wanted_change<false, kSomeShear>(place, 1.0 / sharing);
+      changes.between_moving.push_back({&first, change});
+      residual = std::max(residual, first.residual_of(change) * sharing * sharing);
+      contacts = contacts.subspan(1);
+      continue;
+    }
+    // What all of a run change is summed up in registers.
+    const std::span<Contact> run = run_at_front(contacts);
+    const int sharing = std::max(first.a_.body->contact_count, 1);
+    const btScalar share = 1.0 / sharing;
+    State before{place.delta, place.arm_nms, place.belt_ns, place.load_ns}, sum;
+    const Moved seen = moved(before, place), summed = moved(sum, place);
+    btScalar largest = 0;
+    for (Contact& contact : run) {
+      const Change change = contact.wanted_change<true, kSomeShear>(seen, share);
+      contact.make<true>(change, summed);
+      largest = std::max(largest, contact.residual_of(change));
+    }
+    residual = std::max(residual, largest * sharing * sharing);
+    changes.runs.push_back({&first, sum});
+    contacts = contacts.subspan(run.size());
   }
-  for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i].make<false>(changes[i], contacts[i].in_place(none));
+
+  for (const SharedChanges::OfRun& run : changes.runs) {
+    const Moved place = run.any->in_place(none);
+    place.delta += run.sum.delta;
+    place.arm_nms += run.sum.arm_nms;
+    place.belt_ns += run.sum.belt_ns;
+    place.load_ns += run.sum.load_ns;
+  }
+  for (const SharedChanges::BetweenMoving& of : changes.between_moving)
+    of.contact->make<false>(of.change, of.contact->in_place(none));
   return residual;
 }
 
-btScalar Contact::share(std::span<Contact> contacts, bool some_shear, std::vector<Change>& scratch) {
-  scratch.resize(contacts.size());
-  return some_shear ? share_each<true>(contacts, scratch) : share_each<false>(contacts, scratch);
+btScalar Contact::share(std::span<Contact> contacts, bool some_shear, SharedChanges& changes) {
+  return some_shear ? share_each<true>(contacts, changes) : share_each<false>(contacts, changes);
 }
 
 void Contact::count() const {

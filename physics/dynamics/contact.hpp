@@ -59,11 +59,28 @@ class Contact {
     btScalar normal;
     Two friction, slip;
   };
+  struct State {  // of A, or a change of it, by contacts
+    TwoVectors delta{};
+    btScalar arm_nms = 0, belt_ns = 0, load_ns = 0;
+  };
+  // Of contacts that all saw the same velocities.
+  struct SharedChanges {
+    struct OfRun {  // of contacts that move the same things, on fixed ground
+      const Contact* any;
+      State sum;
+    };
+    struct BetweenMoving {
+      Contact* contact;
+      Change change;
+    };
+    std::vector<OfRun> runs;
+    std::vector<BetweenMoving> between_moving;
+  };
   // An iteration in which each contact moves an equal share of its body's mass, all by the same velocities (mass
   // splitting: Tonge, Benevolenski, Voroshilov, "Mass splitting for jitter-free parallel rigid body simulation", 2012).
   // What several could hold is shared evenly, whatever their order. Returns the largest squared velocity change of a
   // body A that a contact would make alone.
-  static btScalar share(std::span<Contact> contacts, bool some_shear, std::vector<Change>& scratch);
+  static btScalar share(std::span<Contact> contacts, bool some_shear, SharedChanges& changes);
   // One iteration over contacts in their order, each with what those before it have left. Returns the largest squared
   // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
   static btScalar solve(std::span<Contact> contacts, bool some_shear);
@@ -113,15 +130,16 @@ class Contact {
                            const TwoVectors& tangents);
   static Mobility mobility_of(const Rows& of, const Arm* arm);
   Mobility merge_rows();
-  struct Nothing {  // stands in for what A has not
-    btScalar arm_nms = 0, belt_ns = 0, load_ns = 0;
-  };
-  Moved in_place(Nothing& none) const;
+  Moved in_place(State& none) const;  // `none` stands in for what A has not
+  static Moved moved(State& state, const Moved& like) {
+    return {state.delta, state.arm_nms, state.belt_ns, state.load_ns, like.arm_mobility, like.belt_mobility};
+  }
+  static std::span<Contact> run_at_front(std::span<Contact> contacts);
   bool on_ground() const { return !b_.body && !belt_b_; }
   template <bool kSomeShear>
   static btScalar solve_each(std::span<Contact> contacts);
   template <bool kSomeShear>
-  static btScalar share_each(std::span<Contact> contacts, std::span<Change> changes);
+  static btScalar share_each(std::span<Contact> contacts, SharedChanges& changes);
   // What the contact would do if nothing else changed and it alone moved `share` of the bodies' masses.
   template <bool kOnGround, bool kSomeShear>
   Change wanted_change(const Moved& a, btScalar share) const;

@@ -17,7 +17,8 @@ void ContactSolver::add_belt(Belt* belt, const btRigidBody* body) {
   belts_.push_back({belt, body});
   contacts_.reserve(kManyContacts * belts_.size());
   contacts_anew_.reserve(kManyContacts * belts_.size());
-  changes_.reserve(kManyContacts * belts_.size());
+  changes_.runs.reserve(kManyContacts * belts_.size());
+  changes_.between_moving.reserve(kManyContacts * belts_.size());
   touching_.reserve(kManyContacts * belts_.size());
   touching_by_group_.make_room(kManyContacts * belts_.size());
   belt_ground_.make_room(kManyPairs * belts_.size());
@@ -225,6 +226,7 @@ void ContactSolver::make_anew(std::size_t group, btDispatcher& dispatcher, btSca
 
 void ContactSolver::let_friction_creep() {
   creeps_.assign(bodies_.size(), {});
+  given_back_.resize(bodies_.size());
   const auto creep_of = [&](const Contact& contact) -> FrictionCreep& {
     return creeps_[static_cast<std::size_t>(contact.body_a() - bodies_.data())];
   };
@@ -241,8 +243,9 @@ void ContactSolver::let_friction_creep() {
   each_held([](Contact& contact, FrictionCreep& creep) {
     if (creep.matters()) contact.add_spring_to(creep);
   });
-  given_back_.clear();
-  for (const FrictionCreep& creep : creeps_) given_back_.push_back(creep.matters() ? creep.given_back() : TwoVectors{});
+  std::ranges::transform(creeps_, given_back_.begin(), [](const FrictionCreep& creep) {
+    return creep.matters() ? creep.given_back() : TwoVectors{};
+  });
   each_held([&](Contact& contact, const FrictionCreep& creep) {
     contact.take_back(given_back_[static_cast<std::size_t>(&creep - creeps_.data())]);
   });

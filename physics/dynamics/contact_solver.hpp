@@ -81,7 +81,7 @@ class ContactSolver {
       touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
   // Group by group.
   std::vector<Contact> contacts_, contacts_anew_;
-  std::vector<Contact::Change> changes_;
+  Contact::SharedChanges changes_;
   std::vector<FrictionCreep> creeps_;  // of each of bodies_
   std::vector<TwoVectors> given_back_;
   bool some_shear_ = false;                // of contacts_

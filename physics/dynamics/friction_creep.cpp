@@ -24,8 +24,10 @@ bool FrictionCreep::matters() const {
 }
 
 void FrictionCreep::add_spring(const TwoVectors (&rows)[2], btScalar pressing_ns) {
-  for (const TwoVectors& row : rows)
-    stiffness_.selfadjointView<Eigen::Lower>().rankUpdate(to_vector6(row), pressing_ns);
+  for (const TwoVectors& row : rows) {
+    const Vector6 j = to_vector6(row);
+    stiffness_.noalias() += (pressing_ns * j) * j.transpose();
+  }
 }
 
 TwoVectors FrictionCreep::given_back() const {

@@ -23,7 +23,7 @@ class FrictionCreep {
   TwoVectors given_back() const;
 
  private:
-  Eigen::Matrix<double, 6, 6> stiffness_ = Eigen::Matrix<double, 6, 6>::Zero();  // lower triangle
+  Eigen::Matrix<double, 6, 6> stiffness_ = Eigen::Matrix<double, 6, 6>::Zero();
   TwoVectors lost_{};
   btScalar pressing_ns_ = 0;
 };
