@@ -29,8 +29,8 @@ Manoeuvre manoeuvre_of(Scene scene) {
     case turning:
       manoeuvre.phases = {phase(0.4, 0.4, 0.5), phase(-0.3, 0.3, 1), phase(0.1, 0.4, 0.5)};
       break;
-    case lifting:  // front flippers lift the nose, then let it down again
-      manoeuvre.phases = {phase(0, 0, 1.8, -0.8), phase(0, 0, 0.7, 0)};
+    case lifting:  // from where they are carried, front flippers lift the nose, then let it down again
+      manoeuvre.phases = {phase(0, 0, 0.1), phase(0, 0, 1.8, -0.8), phase(0, 0, 0.7, 0)};
       break;
     case stepping:
     case gripping:
