@@ -1,5 +1,6 @@
 // kenaf-gap export: what it writes is read back, and can be imported again.
 #include <catch2/catch.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "formats/runs/run_file.hpp"

@@ -3,6 +3,7 @@
 // told to.
 #include "server/image_server/feed.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>

@@ -1,6 +1,7 @@
 // The whole server through real sockets. No test depends on how fast this machine is.
 #include "server/world_server/world_server.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <thread>
 
