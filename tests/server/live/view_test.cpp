@@ -401,6 +401,7 @@ TEST_CASE("Fifty pages that read nothing cost bounded memory, and others see eve
   for (int i = 0; i < 50; ++i) {
     slow.push_back(std::make_unique<WebClient>(world.port(), 4096));
     REQUIRE(slow.back()->open_websocket());
+    page.state();  // and answers pings: of one that is quiet for long the view lets go
   }
   // Until what the system keeps for them is full: 8 robots are some 3 kB a state, a socket keeps about 64 kB
   for (int i = 0; i < 100; ++i) page.state();
