@@ -117,6 +117,8 @@ class Contact {
     TwoVectors& delta;
     btScalar &arm_nms, &belt_ns, &load_ns;
     btScalar arm_mobility, belt_mobility;
+
+    State state() const { return {delta, arm_nms, belt_ns, load_ns}; }
   };
   // One body's part in the three rows normal, along, across.
   struct Rows {

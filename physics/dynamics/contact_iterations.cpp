@@ -159,7 +159,7 @@ btScalar Contact::solve_each(std::span<Contact> contacts) {
     // On fixed ground A's state stays in registers from contact to contact. Through memory, the computation of a time
     // step is 3 % slower.
     const std::span<Contact> run = run_at_front(contacts);
-    State state{place.delta, place.arm_nms, place.belt_ns, place.load_ns};
+    State state = place.state();
     const Moved kept = moved(state, place);
     for (Contact& contact : run) {
       const Change change = contact.wanted_change<true, kSomeShear>(kept, 1);
@@ -200,7 +200,7 @@ btScalar Contact::share_each(std::span<Contact> contacts, SharedChanges& changes
     const std::span<Contact> run = run_at_front(contacts);
     const int sharing = std::max(first.a_.body->contact_count, 1);
     const btScalar share = 1.0 / sharing;
-    State before{place.delta, place.arm_nms, place.belt_ns, place.load_ns}, sum;
+    State before = place.state(), sum;
     const Moved seen = moved(before, place), summed = moved(sum, place);
     btScalar largest = 0;
     for (Contact& contact : run) {

@@ -65,10 +65,7 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
       drives_{TrackDrive(robot::kLeft, robot.drive, robot.effects),
               TrackDrive(robot::kRight, robot.drive, robot.effects)},
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
-  for (Belt& belt : belts_) {
-    belt.moving_mass_kg = description.drive.moving_mass_kg;
-    belt.slip_spm = description.effects.slip_with_speed_spm;
-  }
+  for (Belt& belt : belts_) belt.slip_spm = description.effects.slip_with_speed_spm;
   make_hull(id);
   for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight})
     if (description.has(which)) make_flipper(which, id);
