@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
@@ -129,31 +128,9 @@ VectorXd most_likely_amounts(const StageData& data, const GroupVectors& residual
   return amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
 }
 
-// Eigenvectors and eigenvalues of S S', without negligible ones.
-std::pair<MatrixXd, VectorXd> directions_of(const MatrixXd& shapes) {
-  if (shapes.cols() == 0) return {shapes, VectorXd()};
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(shapes.transpose() * shapes);
-  const VectorXd& squares = eigen.eigenvalues();
-  Index first = 0;
-  while (first < squares.size() && squares[first] < kNoShape * kNoShape) ++first;
-  const Index count = squares.size() - first;
-  return {shapes * eigen.eigenvectors().rightCols(count) * squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal(),
-          squares.tail(count)};
-}
-
 // Subtracts local shapes at their most likely amounts from a residual; noise and discrepancy remain.
-VectorXd without_local_shapes(const StageGroup& group, const Discrepancies& discrepancies, VectorXd residual) {
-  MatrixXd columns(residual.size(), group.local_shapes.cols() + 1);
-  columns << group.local_shapes, residual;
-  for (const Series& series : group.series)
-    SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
-                   group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])
-        .whiten(columns.middleRows(series.first, series.count));
-  const Index count = group.local_shapes.cols();
-  const auto shapes = columns.leftCols(count);
-  MatrixXd normal = MatrixXd::Identity(count, count);
-  normal.noalias() += shapes.transpose() * shapes;
-  residual -= group.local_shapes * normal.llt().solve(shapes.transpose() * columns.col(count));
+VectorXd without_local_shapes(const StageGroup& group, const GroupWhitener& whitener, VectorXd residual) {
+  residual -= group.local_shapes * whitener.local_amounts(residual);
   return residual;
 }
 
@@ -183,29 +160,63 @@ Discrepancies no_discrepancy() {
 }
 
 GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discrepancies) {
+  const Index count = group.local_shapes.cols();
+  squares_ = MatrixXd::Zero(count, count);
   for (const Series& series : group.series) {
-    parts_.push_back(
-        {series.first, series.count,
-         SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
-                        group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])});
-    log_determinant_ += parts_.back().whitener.log_determinant();
+    Part part{series.first,
+              series.count,
+              SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
+                             group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind]),
+              {},
+              {}};
+    log_determinant_ += part.whitener.log_determinant();
+    const auto shapes = group.local_shapes.middleRows(series.first, series.count);
+    for (Index column = 0; column < count; ++column)
+      if ((shapes.col(column).array() != 0).any()) part.local.push_back(column);
+    part.shapes = shapes(Eigen::all, part.local);
+    part.whitener.whiten(part.shapes);
+    squares_(part.local, part.local) += part.shapes.transpose() * part.shapes;
+    parts_.push_back(std::move(part));
   }
-  MatrixXd shapes = group.local_shapes;
-  for (const Part& part : parts_) part.whitener.whiten(shapes.middleRows(part.first, part.count));
 
-  // covariance in whitened units: 1 + S S'; along its eigenvector u_i the variance is 1 + s_i^2
-  VectorXd squares;
-  std::tie(directions_, squares) = directions_of(shapes);
-  shrink_ = 1 - (1 + squares.array()).rsqrt();
-  log_determinant_ += (1 + squares.array()).log().sum();
+  // Covariance in whitened units: 1 + S S'. With S'S = V s^2 V', its inverse root is 1 - S V t V' S', where
+  // t = (1 - (1 + s^2)^(-1/2)) / s^2.
+  if (count > 0) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(squares_);
+    const Eigen::ArrayXd squares = (eigen.eigenvalues().array() < kNoShape * kNoShape).select(0, eigen.eigenvalues());
+    const Eigen::ArrayXd shrink = (squares > 0).select((1 - (1 + squares).rsqrt()) / squares, 0);
+    shrink_ = eigen.eigenvectors() * shrink.matrix().asDiagonal() * eigen.eigenvectors().transpose();
+    log_determinant_ += (1 + squares).log().sum();
+  }
   shared_ = (*this)(shared_shapes(group, discrepancies.numbers_off));
 }
 
-MatrixXd GroupWhitener::operator()(MatrixXd columns) const {
+void GroupWhitener::whiten_series(MatrixXd& columns) const {
   for (const Part& part : parts_) part.whitener.whiten(columns.middleRows(part.first, part.count));
-  const MatrixXd along = shrink_.asDiagonal() * (directions_.transpose() * columns);
-  columns.noalias() -= directions_ * along;
+}
+
+MatrixXd GroupWhitener::local_products(const MatrixXd& white) const {
+  MatrixXd products = MatrixXd::Zero(squares_.cols(), white.cols());
+  for (const Part& part : parts_)
+    products(part.local, Eigen::all) += part.shapes.transpose() * white.middleRows(part.first, part.count);
+  return products;
+}
+
+MatrixXd GroupWhitener::operator()(MatrixXd columns) const {
+  whiten_series(columns);
+  const MatrixXd along = shrink_ * local_products(columns);
+  for (const Part& part : parts_)
+    columns.middleRows(part.first, part.count) -= part.shapes * along(part.local, Eigen::all);
   return columns;
+}
+
+VectorXd GroupWhitener::local_amounts(VectorXd residual) const {
+  if (squares_.cols() == 0) return {};
+  MatrixXd white = std::move(residual);
+  whiten_series(white);
+  MatrixXd normal = squares_;
+  normal.diagonal().array() += 1;
+  return normal.llt().solve(local_products(white));
 }
 
 std::vector<GroupWhitener> whiteners_of(const StageData& data, const Discrepancies& discrepancies) {
@@ -262,8 +273,8 @@ Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, co
     amounts.tail(numbers) *= discrepancies.numbers_off;
     GroupVectors rest;
     for (std::size_t g = 0; g < data.groups.size(); ++g)
-      rest.push_back(without_local_shapes(data.groups[g], discrepancies,
-                                          residual[g] - shared_shapes(data.groups[g], 1) * amounts));
+      rest.push_back(
+          without_local_shapes(data.groups[g], whiteners[g], residual[g] - shared_shapes(data.groups[g], 1) * amounts));
     discrepancies.of_kind = estimated(data, rest);
     if (has_settled(before, discrepancies)) break;
   }
@@ -292,7 +303,7 @@ GroupVectors without_open_shapes(const StageData& data, const GroupVectors& resi
                                  const Discrepancies& discrepancies) {
   GroupVectors rest = without_shared_shapes(data, residual, discrepancies);
   for (std::size_t g = 0; g < data.groups.size(); ++g)
-    rest[g] = without_local_shapes(data.groups[g], discrepancies, std::move(rest[g]));
+    rest[g] = without_local_shapes(data.groups[g], GroupWhitener(data.groups[g], discrepancies), std::move(rest[g]));
   return rest;
 }
 

@@ -38,15 +38,22 @@ class GroupWhitener {
   double log_determinant() const { return log_determinant_; }
   // The group's shared shapes, whitened; those of the numbers are scaled by numbers_off.
   const Eigen::MatrixXd& shared() const { return shared_; }
+  // The most likely amounts of the group's local shapes in a residual.
+  Eigen::VectorXd local_amounts(Eigen::VectorXd residual) const;
 
  private:
-  struct Part {
+  struct Part {  // a series, with the local shapes that are not 0 in it, by their columns: most act in one series
     Eigen::Index first, count;
     SeriesWhitener whitener;
+    std::vector<Eigen::Index> local;
+    Eigen::MatrixXd shapes;  // S, whitened
   };
+  void whiten_series(Eigen::MatrixXd& columns) const;
+  Eigen::MatrixXd local_products(const Eigen::MatrixXd& white) const;  // S' white
+
   std::vector<Part> parts_;
-  Eigen::MatrixXd directions_;  // orthonormal, of the local shapes
-  Eigen::VectorXd shrink_;
+  Eigen::MatrixXd squares_;  // S'S of the local shapes
+  Eigen::MatrixXd shrink_;   // (1 + S S')^(-1/2) = 1 - S shrink S'
   Eigen::MatrixXd shared_;
   double log_determinant_ = 0;
 };
