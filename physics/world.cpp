@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <list>
 #include <map>
 #include <stdexcept>
 
@@ -24,7 +25,7 @@ void check_pose(const Pose& X, const char* what) {
 // A robot in a scene, which it leaves when this ends.
 struct RobotInScene {
   std::unique_ptr<RobotModel> model;
-  std::unique_ptr<SensorSet> sensors;
+  std::vector<SensorSet> sensors;  // its own, then those of its instruments
   struct MissionLink {
     double angle_rad = 0, target_rad = 0;
   };
@@ -32,12 +33,17 @@ struct RobotInScene {
   std::string fault;
   RobotTruth last_whole{};  // the last one before the fault
   DriveCurrents currents;   // 0 after the fault
+
+  void forget_motion() {
+    for (SensorSet& set : sensors) set.forget_motion();
+  }
 };
 
 struct RobotEntry : RobotInScene {
   RobotDescription description;
   std::string name;
   Pose X_WB_first;
+  std::list<RobotDescription> instruments;  // sensors refer to them
 };
 
 using Extent = Eigen::AlignedBox3d;
@@ -93,13 +99,18 @@ struct World::Implementation {
     return found->second;
   }
 
+  SensorSet sensors_of(const RobotDescription& instruments, const std::string& name) const {
+    return {instruments, name, seed, settings.time_step_s, description.gravity_W_mps2};
+  }
+
   // A robot with sensors and mission packages, as at the start, placed in `where`, and a first sample for the sensors.
   RobotInScene built(RobotId id, const RobotEntry& entry, const Pose& X_WB, Scene& where, double now_s) {
     RobotInScene robot;
     robot.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
                                                where.dynamics(), where.solver());
-    robot.sensors = std::make_unique<SensorSet>(robot.model->description, entry.name, seed, settings.time_step_s,
-                                                description.gravity_W_mps2);
+    robot.sensors.push_back(sensors_of(robot.model->description, entry.name));
+    for (const RobotDescription& instruments : entry.instruments)
+      robot.sensors.push_back(sensors_of(instruments, entry.name));
     for (const MissionPackageDescription& package : entry.description.mission_packages) {
       auto& links = robot.mission.emplace_back();
       for (const auto& link : package.links) {
@@ -136,14 +147,21 @@ struct World::Implementation {
       else
         stop_at_fault(entry);
     }
-    const RobotTruth& truth = entry.last_whole;
     entry.currents = {};
-    if (!entry.fault.empty()) return entry.sensors->record(truth, now_s, {}, {}, {});
-    if (entry.sensors->has_touch()) where.touches(id, touches);
-    entry.currents = {{model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
-                      {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
-                       model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};
-    entry.sensors->record(truth, now_s, entry.currents.track_a, entry.currents.flipper_a, touches);
+    if (entry.fault.empty())
+      entry.currents = {
+          {model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
+          {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
+           model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};
+    sample(id, entry, entry.sensors, where, now_s);
+  }
+
+  // Takes a sample for some of the robot's sensors.
+  void sample(RobotId id, const RobotInScene& entry, std::span<SensorSet> sensors, const Scene& where, double now_s) {
+    touches.clear();
+    if (entry.fault.empty() && std::ranges::any_of(sensors, &SensorSet::has_touch)) where.touches(id, touches);
+    for (SensorSet& set : sensors)
+      set.record(entry.last_whole, now_s, entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
   // Puts loose boxes whose poses a faulty robot has made invalid back to their initial poses.
@@ -294,7 +312,7 @@ void World::teleport(RobotId id, const Pose& X_WB) {
     return;
   }
   impl_->scene->place_free(*entry.model, X_WB_unit, false);
-  entry.sensors->forget_motion();
+  entry.forget_motion();
   impl_->record(id, entry, *impl_->scene, impl_->time_s());
 }
 
@@ -308,7 +326,7 @@ void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Co
     throw std::invalid_argument("set_in_motion: the command is not finite");
   if (!entry.fault.empty()) return;
   entry.model->set_in_motion(motion, command);
-  entry.sensors->forget_motion();  // the jump in speed is no acceleration
+  entry.forget_motion();  // the jump in speed is no acceleration
   impl_->record(id, entry, *impl_->scene, impl_->time_s());
 }
 
@@ -319,8 +337,19 @@ void World::prescribe(RobotId id, const PrescribedMotion& motion) {
   impl_->robot(id).model->prescribe(motion);
 }
 
-void World::reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose) {
-  impl_->robot(id).sensors->reset(sensor, pose);
+std::size_t World::add_instruments(RobotId id, const RobotDescription& description) {
+  RobotEntry& entry = impl_->robot(id);
+  std::list<RobotDescription> added{description};  // joins the others when its sensors have, which cannot fail
+  SensorSet sensors = impl_->sensors_of(added.front(), entry.name);
+  impl_->sample(id, entry, {&sensors, 1}, *impl_->scene, impl_->time_s());
+  entry.sensors.push_back(std::move(sensors));
+  entry.instruments.splice(entry.instruments.end(), added);
+  return entry.instruments.size();
+}
+
+void World::reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose,
+                         std::size_t instruments) {
+  impl_->robot(id).sensors.at(instruments).reset(sensor, pose);
 }
 
 void World::step() {
@@ -352,14 +381,14 @@ const std::string& World::fault(RobotId id) const {
   return impl_->robot(id).fault;
 }
 
-void World::read_sensors(RobotId id, std::vector<SensorSample>& out) {
+void World::read_sensors(RobotId id, std::vector<SensorSample>& out, std::size_t instruments) {
   const auto own = static_cast<std::uint32_t>(id);
   const RayCaster cast = [this, own](const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                                      double max_m) -> std::optional<double> {
     const auto hit = impl_->scene->cast_ray(from, direction, max_m, own);
     return hit ? std::optional(hit->distance_m) : std::nullopt;
   };
-  impl_->robot(id).sensors->read(impl_->steps, cast, out);
+  impl_->robot(id).sensors.at(instruments).read(impl_->steps, cast, out);
 }
 
 BoxId World::add_box(const Box& box) {

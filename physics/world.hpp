@@ -71,10 +71,16 @@ class World {
   // currents are those that the motion requires. teleport() and reset() end it. Throws std::invalid_argument if a value
   // is not finite.
   void prescribe(RobotId id, const PrescribedMotion& motion);
-  // Restarts the integration of a sensor, an index into robot_description(id).sensors: encoder counts, odometry and
+  // Adds instruments to a robot: the sensors of `description`, with its effects on them and its encoders' resolution,
+  // report the motion of the robot. They report what the sensors of a robot with that description would if it moved
+  // like this one; the rest of the description counts for nothing. Returns their number: 1 for the first, as the
+  // robot's own sensors are number 0. They stay until the robot is removed.
+  std::size_t add_instruments(RobotId id, const RobotDescription& description);
+  // Restarts the integration of a sensor, an index into the description's sensors: encoder counts, odometry and
   // tachometer angle at 0, INS at `pose`; without `pose` the INS reports the robot's true pose again. Throws
-  // std::out_of_range if there is no such sensor.
-  void reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose = {});
+  // std::out_of_range if there are no such sensor or instruments.
+  void reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose = {},
+                    std::size_t instruments = 0);
 
   // Advances everything by one time step.
   void step();
@@ -98,8 +104,9 @@ class World {
   // to its initial pose.
   const std::string& fault(RobotId id) const;
   // Appends to `out` the readings that are due, in the order of the description: those of each sensor whose period has
-  // passed since its last report by this call. A second call without a step between appends nothing.
-  void read_sensors(RobotId id, std::vector<SensorSample>& out);
+  // passed since its last report by this call. A second call without a step between appends nothing. Throws
+  // std::out_of_range if there are no such instruments.
+  void read_sensors(RobotId id, std::vector<SensorSample>& out, std::size_t instruments = 0);
 
   // Both throw std::invalid_argument as add_robot does; add_box also for a size, mass or friction out of range.
   BoxId add_box(const Box& box);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "physics/terrain_effects.hpp"
 #include "robot/angles.hpp"
@@ -93,9 +94,13 @@ bool apart(const Pose& X_WB, const Pose& other) {
   return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
+// The robots that report one drive; all move as the first does.
+using Robots = std::span<const RobotDescription>;
+
 // Puts the robot down with its flippers at their angles, and returns the pose in which it has settled.
-Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
+Pose put_down(Scene& scene, Robots robots, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
               const Pose& X_WB) {
+  RobotDescription robot = robots.front();
   // Flippers that are all alike can start at their angle.
   const bool alike = std::ranges::count(flippers, flippers.front()) == std::ssize(flippers);
   if (robot.has_flippers() && alike)
@@ -104,6 +109,7 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
 
   // Placed with belts held still and measured flippers held at their first angles.
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
+  for (const RobotDescription& other : robots.subspan(1)) scene.world.add_instruments(scene.robot, other);
   if (manoeuvre.measured) {
     scene.held = actual_motion(*manoeuvre.measured, 0, robot, report_delays(robot));
     for (std::optional<double>& speed : scene.held.track_mps)
@@ -123,9 +129,9 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
 }
 
 // Puts the robot at rest at the start pose, and resets its sensors.
-void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& manoeuvre,
-                  const FlipperAngles& flippers, const Pose& X_WB) {
-  Pose X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB);
+void put_at_start(Scene& scene, Robots robots, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
+                  const Pose& X_WB) {
+  Pose X_WB_settled = put_down(scene, robots, manoeuvre, flippers, X_WB);
   // A recorded start is where the robot stood at rest. A robot that comes down on its flippers moves by millimetres; it
   // is then put down again, not moved, since the way it is put down decides which forces friction holds.
   const Pose X_WB_aim = manoeuvre.start ? aimed_off(X_WB, X_WB_settled) : X_WB;
@@ -133,7 +139,7 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
     scene.world.remove_robot(scene.robot);
     scene.world.reset();
     scene.contacts = 0;
-    X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB_aim);
+    X_WB_settled = put_down(scene, robots, manoeuvre, flippers, X_WB_aim);
   }
 
   // A start in the air: by the manoeuvre, or by a recorded height.
@@ -141,7 +147,8 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
   if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
     lift_m = *manoeuvre.start->z_m - X_WB_settled.p.z();
   if (lift_m > 0) scene.world.teleport(scene.robot, {X_WB_settled.p + Eigen::Vector3d(0, 0, lift_m), X_WB_settled.q});
-  for (std::size_t i = 0; i < robot.sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i);
+  for (std::size_t r = 0; r < robots.size(); ++r)
+    for (std::size_t i = 0; i < robots[r].sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i, {}, r);
 }
 
 // Sets the settled robot in motion as at the start of the run. With known tracks, missing rates are those without slip,
@@ -171,20 +178,24 @@ void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotio
 
 }  // namespace
 
-RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
-                 const RollOutOptions& options) {
+std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const physics::WorldDescription& world,
+                               const Manoeuvre& manoeuvre, const RollOutOptions& options) {
+  if (robots.empty()) throw std::invalid_argument("no robot to roll out");
   if (manoeuvre.phases.empty() && manoeuvre.timed.empty())
     throw std::invalid_argument(fmt::format("manoeuvre {}: has neither phases nor commands", manoeuvre.name));
   const std::uint64_t per_sample = steps_per_sample(options);
-  const RobotDescription measured = instrumented(robot, options.noise_scale);
-  const ReportDelays late = report_delays(measured);
+  std::vector<RobotDescription> measured;
+  for (const RobotDescription& robot : robots) measured.push_back(instrumented(robot, options.noise_scale));
+  const RobotDescription& robot = measured.front();
+  const ReportDelays late = report_delays(robot);
   const FlipperAngles flippers = flippers_at_start(manoeuvre, robot);
   Scene scene{World(physics::with_terrain_effects(world, robot.effects), options.physics, options.seed), per_sample};
   put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
 
-  // Operator, recorder, and a recorded run's motion at its start.
+  // Operator, recorders, and a recorded run's motion at its start.
   RollOut out;
-  RunRecorder recorder(measured, options);
+  std::vector<RunRecorder> recorders;
+  for (const RobotDescription& one : measured) recorders.emplace_back(one, options);
   Driver driver(manoeuvre, flippers);
   robot::Command command;
   if (manoeuvre.start && manoeuvre.start->motion)
@@ -202,11 +213,11 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
       if (next) command = *next;
       while (out.phase_began_s.size() < std::min(driver.phase() + 1, manoeuvre.phases.size()))
         out.phase_began_s.push_back(t_s);
-      if (sample) {
+      for (std::size_t r = 0; sample && r < recorders.size(); ++r) {
         samples.clear();
-        scene.world.read_sensors(scene.robot, samples);
+        scene.world.read_sensors(scene.robot, samples, r);
         // Nine decimals: 0.29, not 29 * 0.01.
-        recorder.add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
+        recorders[r].add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
       }
       out.fault = scene.world.fault(scene.robot);
       if (!next || !out.fault.empty()) break;
@@ -214,15 +225,21 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
     }
     if (manoeuvre.measured)
       scene.world.prescribe(scene.robot,
-                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, measured, late));
+                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, robot, late));
     scene.step();
   }
-  out.run = recorder.take();
   out.succeeded = out.fault.empty() && succeeded(manoeuvre, out.end.X_WB);
   out.gave_up = driver.gave_up();
   out.steps = scene.world.step_count();
   out.contacts_per_step = static_cast<double>(scene.contacts) / static_cast<double>(out.steps);
-  return out;
+  std::vector<RollOut> outs(robots.size(), out);
+  for (std::size_t r = 0; r < outs.size(); ++r) outs[r].run = recorders[r].take();
+  return outs;
+}
+
+RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
+                 const RollOutOptions& options) {
+  return std::move(roll_outs({&robot, 1}, world, manoeuvre, options).front());
 }
 
 }  // namespace kenaf::rollout

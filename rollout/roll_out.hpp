@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,13 @@ struct RollOut {
 // if the options are inconsistent or the manoeuvre has neither phases nor commands.
 RollOut roll_out(const physics::RobotDescription& robot, const physics::WorldDescription& world,
                  const Manoeuvre& manoeuvre, const RollOutOptions& options);
+
+// One drive, as several robots report it that move alike in it (moves_alike.hpp): simulated once, with the bits that
+// roll_out() gives for each. They differ in RollOut::run alone. Throws as roll_out() does, and std::invalid_argument if
+// there are no robots.
+std::vector<RollOut> roll_outs(std::span<const physics::RobotDescription> robots,
+                               const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
+                               const RollOutOptions& options);
 
 // Sigma of the white noise of columns, in their units, as a dataset states it; without columns that have none.
 std::map<std::string, double> column_noise(const physics::RobotDescription& robot, const RollOutOptions& options);

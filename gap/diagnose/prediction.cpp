@@ -9,6 +9,7 @@
 
 #include "gap/diagnose/repeats.hpp"
 #include "gap/parallel.hpp"
+#include "rollout/moves_alike.hpp"
 #include "rollout/roll_out.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -82,21 +83,33 @@ const std::vector<VectorXd>& Predictor::nominal(Passage passage) const {
   return nominal_[static_cast<std::size_t>(passage)];
 }
 
-runs::Run Predictor::simulate(const rollout::Manoeuvre& as_recorded, std::size_t run,
-                              const Variation& variation) const {
-  rollout::Manoeuvre replay = as_recorded;
-  replay.start->x_m += variation.start_x_m;
-  replay.start->y_m += variation.start_y_m;
-  replay.start->yaw_rad += variation.start_yaw_rad;
+std::vector<runs::Run> Predictor::simulate(Replay replay, std::size_t run,
+                                           std::span<const Variation* const> variations) const {
+  const Variation& any = *variations.front();
+  rollout::Manoeuvre manoeuvre = manoeuvre_of(replay, run);
+  manoeuvre.start->x_m += any.start_x_m;
+  manoeuvre.start->y_m += any.start_y_m;
+  manoeuvre.start->yaw_rad += any.start_yaw_rad;
   rollout::RollOutOptions options;
-  options.physics = variation.physics;
+  options.physics = any.physics;
   options.noise_scale = 0;
   options.mocap_noise_m = options.mocap_noise_rad = 0;
-  return rollout::roll_out(variation.robot, observations_.worlds[observations_.runs[run].world], replay, options).run;
+  std::vector<physics::RobotDescription> robots;
+  for (const Variation* variation : variations) robots.push_back(variation->robot);
+  std::vector<runs::Run> result;
+  for (rollout::RollOut& roll_out :
+       rollout::roll_outs(robots, observations_.worlds[observations_.runs[run].world], manoeuvre, options))
+    result.push_back(std::move(roll_out.run));
+  return result;
+}
+
+runs::Run Predictor::simulate(Replay replay, std::size_t run, const Variation& variation) const {
+  const Variation* const one = &variation;
+  return std::move(simulate(replay, run, {&one, 1}).front());
 }
 
 runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const {
-  return simulate(observations_.runs[run].replay, run, variation);
+  return simulate(Replay::commands, run, variation);
 }
 
 Replay Predictor::replay_of(Passage passage, std::size_t run) const {
@@ -104,21 +117,20 @@ Replay Predictor::replay_of(Passage passage, std::size_t run) const {
   return by_commands ? Replay::commands : Replay::belts;
 }
 
-runs::Run Predictor::simulate_in(Replay replay, std::size_t run, const Variation& variation) const {
+const rollout::Manoeuvre& Predictor::manoeuvre_of(Replay replay, std::size_t run) const {
   const Observation& observed = observations_.runs[run];
-  return simulate(replay == Replay::commands ? observed.replay : *observed.measured, run, variation);
+  return replay == Replay::commands ? observed.replay : *observed.measured;
 }
 
 std::vector<VectorXd> Predictor::features_of_each(std::span<const Variation> variations, Passage passage) {
   return all_of(observations_.runs.size(), [&](std::size_t run) {
-    return features_.maps[run].of(simulate_in(replay_of(passage, run), run, variations[run]));
+    return features_.maps[run].of(simulate(replay_of(passage, run), run, variations[run]));
   });
 }
 
-VectorXd Predictor::values_in(Replay replay, std::size_t run, const Variation& variation) const {
-  const runs::Run simulated = simulate_in(replay, run, variation);
+VectorXd Predictor::values_in(Replay replay, std::size_t run, const runs::Run& simulated, double samples_late) const {
   const FeatureMap& map = features_.maps[run];
-  const VectorXd features = map.of(simulated, variation.samples_late);
+  const VectorXd features = map.of(simulated, samples_late);
   VectorXd all;
   for (const Passage passage : kPassages) {
     const StageFeatures& stage = features_.of(passage)[run];
@@ -142,6 +154,27 @@ StageValues Predictor::by_stage(Replay replay, std::size_t run, const VectorXd& 
   return of_stage;
 }
 
+std::vector<std::vector<RollOut>> Predictor::alike_in_motion(const std::set<RollOut>& roll_outs) const {
+  std::vector<std::vector<RollOut>> groups;
+  std::vector<Variation> moving;  // of each group of the present run
+  std::size_t first = 0;          // group of the present run
+  for (const RollOut& one : roll_outs) {
+    const bool is_next_run =
+        groups.empty() || groups.back().front().replay != one.replay || groups.back().front().run != one.run;
+    if (is_next_run) moving.clear(), first = groups.size();
+    Variation variation = known_.variation(one.variation);
+    variation.robot = rollout::without_reports(std::move(variation.robot), manoeuvre_of(one.replay, one.run));
+    variation.samples_late = 0;
+    const auto place = static_cast<std::size_t>(std::ranges::find(moving, variation) - moving.begin());
+    if (place == moving.size()) {
+      moving.push_back(std::move(variation));
+      groups.emplace_back();
+    }
+    groups[first + place].push_back(one);
+  }
+  return groups;
+}
+
 std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::span<const Variation> variations,
                                            Passage passage) {
   // a variation is known by its number; the cache is emptied when too large
@@ -153,16 +186,31 @@ std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::sp
   };
   const auto is_measured = [&](std::size_t run) { return !features_.of(passage)[run].bins.empty(); };
 
-  // unknown roll-outs, each once
+  // unknown roll-outs, each once, and of those that move alike one simulation
   std::set<RollOut> unknown;
   for (const Asked& one : asked)
     if (is_measured(one.run) && known_.find(roll_out_of(one)) == nullptr) unknown.insert(roll_out_of(one));
-  const std::vector<RollOut> jobs(unknown.begin(), unknown.end());
+  const std::vector<std::vector<RollOut>> jobs = alike_in_motion(unknown);
   const std::vector<VectorXd> simulated = all_of(jobs.size(), [&](std::size_t i) {
-    return values_in(jobs[i].replay, jobs[i].run, known_.variation(jobs[i].variation));
+    std::vector<const Variation*> variations_of_job;
+    for (const RollOut& one : jobs[i]) variations_of_job.push_back(&known_.variation(one.variation));
+    const auto [replay, run, any] = jobs[i].front();
+    const std::vector<runs::Run> reports = simulate(replay, run, variations_of_job);
+    VectorXd all;
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+      const VectorXd values = values_in(replay, run, reports[k], variations_of_job[k]->samples_late);
+      all.conservativeResize(all.size() + values.size());
+      all.tail(values.size()) = values;
+    }
+    return all;
   });
-  for (std::size_t i = 0; i < jobs.size(); ++i)
-    known_.add(jobs[i], by_stage(jobs[i].replay, jobs[i].run, simulated[i]));
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const Index size = simulated[i].size() / std::ssize(jobs[i]);
+    for (std::size_t k = 0; k < jobs[i].size(); ++k)
+      known_.add(jobs[i][k],
+                 by_stage(jobs[i][k].replay, jobs[i][k].run, simulated[i].segment(static_cast<Index>(k) * size, size)));
+  }
+  roll_outs_ += unknown.size() - jobs.size();
 
   // the stage's part of each roll-out
   std::vector<VectorXd> values(asked.size());

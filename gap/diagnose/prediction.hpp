@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -67,11 +68,15 @@ class Predictor {
   std::size_t roll_outs() const { return roll_outs_; }
 
  private:
-  runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
   Replay replay_of(Passage passage, std::size_t run) const;
-  runs::Run simulate_in(Replay replay, std::size_t run, const Variation& variation) const;
+  const rollout::Manoeuvre& manoeuvre_of(Replay replay, std::size_t run) const;
+  // The reports of variations that move alike.
+  std::vector<runs::Run> simulate(Replay replay, std::size_t run, std::span<const Variation* const> variations) const;
+  runs::Run simulate(Replay replay, std::size_t run, const Variation& variation) const;
+  // Groups of roll-outs that move alike.
+  std::vector<std::vector<RollOut>> alike_in_motion(const std::set<RollOut>& roll_outs) const;
   // Values of all stages that are compared in the replay, concatenated.
-  Eigen::VectorXd values_in(Replay replay, std::size_t run, const Variation& variation) const;
+  Eigen::VectorXd values_in(Replay replay, std::size_t run, const runs::Run& simulated, double samples_late) const;
   StageValues by_stage(Replay replay, std::size_t run, const Eigen::VectorXd& values) const;
   // A run with a variation, given by its index.
   struct Asked {

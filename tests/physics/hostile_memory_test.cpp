@@ -76,6 +76,10 @@ TEST_CASE("A robot for which there is no memory is not in the world", "[hostile]
         }) > 50);
 }
 
+TEST_CASE("Instruments for which there is no memory are not on the robot", "[hostile]") {
+  CHECK(fail_each_call([](World& world) { world.add_instruments(world.robots().front(), kKenaf); }) > 5);
+}
+
 TEST_CASE("A box for which there is no memory is not in the world", "[hostile]") {
   CHECK(fail_each_call([](World& world) {
           Box box;

@@ -296,3 +296,45 @@ TEST_CASE("A reset sensor starts from zero, an INS from the given pose") {
   CHECK(ins.roll_pitch_yaw_rad.z() == Approx(std::numbers::pi / 2).margin(2e-3));
   CHECK_THROWS_AS(world.reset_sensor(id, 9), std::out_of_range);
 }
+
+TEST_CASE("Instruments report what the sensors of a robot would that moves alike, and stay until it is removed") {
+  RobotDescription plain = load_robot("kenaf"), biased = plain;
+  biased.effects.gyro_bias_z_radps = 0.1;
+  biased.effects.gyro_delay_s = 0.05;
+  World world(ground(), {}, 1), other(ground(), {}, 1);
+  const RobotId id = world.add_robot(plain, "robot", {}), with_own = other.add_robot(biased, "robot", {});
+  CHECK(world.add_instruments(id, biased) == 1);
+  robot::Command turn;
+  turn.track_speed_mps = {-0.2, 0.2};
+  const auto readings_agree = [&] {
+    world.set_command(id, turn);
+    other.set_command(with_own, turn);
+    for (int i = 0; i < 200; ++i) {
+      world.step();
+      other.step();
+    }
+    std::vector<SensorSample> instruments, sensors, own;
+    world.read_sensors(id, instruments, 1);
+    other.read_sensors(with_own, sensors);
+    world.read_sensors(id, own);
+    const auto rate_of = [](const std::vector<SensorSample>& samples) {
+      for (const SensorSample& sample : samples)
+        if (const auto* imu = std::get_if<ImuReading>(&sample.reading)) return imu->angular_velocity_radps.z();
+      return 0.0;
+    };
+    return rate_of(instruments) == rate_of(sensors) && rate_of(instruments) != rate_of(own);
+  };
+  CHECK(readings_agree());
+  world.teleport(id, {});
+  other.teleport(with_own, {});
+  CHECK(readings_agree());
+  world.reset();
+  other.reset();
+  CHECK(readings_agree());
+
+  std::vector<SensorSample> none;
+  CHECK_THROWS_AS(world.read_sensors(id, none, 2), std::out_of_range);
+  CHECK_THROWS_AS(world.reset_sensor(id, 0, {}, 2), std::out_of_range);
+  world.remove_robot(id);
+  CHECK_THROWS_AS(world.add_instruments(id, biased), std::out_of_range);
+}

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include "physics/effects.hpp"
+#include "rollout/moves_alike.hpp"
 #include "tests/rollout/exact_runs.hpp"
 
 using namespace kenaf;
@@ -216,4 +218,69 @@ TEST_CASE("A robot with one pair of flippers is recorded with empty cells where 
   CHECK(out.run.column("flipper_fr_rad").back() == Approx(robot.flipper.front().start_angle_rad).margin(0.01));
   CHECK(std::ranges::all_of(out.run.column("flipper_rl_rad"), [](double cell) { return std::isnan(cell); }));
   CHECK(std::ranges::all_of(out.run.column("flipper_rr_a"), [](double cell) { return std::isnan(cell); }));
+}
+
+namespace {
+
+// The robot once without effects, and once with each effect on sensors, far from neutral.
+std::vector<physics::RobotDescription> with_each_sensor_effect(const physics::RobotDescription& robot) {
+  std::vector<physics::RobotDescription> robots{robot};
+  for (const physics::EffectInfo& effect : physics::effect_catalogue())
+    if (effect.stage == physics::Stage::sensor)
+      for (const physics::EffectParameter& parameter : effect.parameters) {
+        robots.push_back(robot);
+        robots.back().effects.*parameter.value = parameter.neutral + 0.3 * (parameter.max - parameter.neutral);
+      }
+  return robots;
+}
+
+// Those that move as the first one does.
+std::vector<physics::RobotDescription> moving_alike(std::vector<physics::RobotDescription> robots,
+                                                    const Manoeuvre& manoeuvre) {
+  const physics::RobotDescription moves = without_reports(robots.front(), manoeuvre);
+  std::erase_if(robots, [&](const auto& robot) { return !(without_reports(robot, manoeuvre) == moves); });
+  return robots;
+}
+
+}  // namespace
+
+TEST_CASE("Robots that move alike are simulated once, with the bits of a simulation of each") {
+  const auto kenaf = physics::load_robot("kenaf");
+  const std::vector<physics::RobotDescription> robots = with_each_sensor_effect(kenaf);
+  std::size_t next = 0;
+  for (const Manoeuvre& manoeuvre : shipped_manoeuvres()) {
+    INFO(manoeuvre.name);
+    std::vector<std::string> unsupported;
+    const physics::WorldDescription world = physics::load_world(manoeuvre.world, unsupported);
+    RollOutOptions options;  // with noise, which does not depend on who else reports
+    options.physics.time_step_s = 0.002;
+    const std::vector<RollOut> together = roll_outs(robots, world, manoeuvre, options);
+    REQUIRE(together.size() == robots.size());
+    // one of them alone, another one in each manoeuvre
+    const RollOut alone = roll_out(robots[next], world, manoeuvre, options);
+    CHECK(same_bits(alone.run, together[next].run));
+    CHECK(alone.steps == together[next].steps);
+    next = (next + 1) % robots.size();
+  }
+  CHECK(shipped_manoeuvres().size() >= robots.size());
+}
+
+TEST_CASE("A replay of belts takes encoders' errors out of the motion: robots with other encoders do not move alike") {
+  const auto kenaf = physics::load_robot("kenaf");
+  const std::vector<physics::RobotDescription> robots = with_each_sensor_effect(kenaf);
+  const runs::Run run = roll_out(kenaf, flat(), straight(0.2, 1), exact()).run;
+  const Manoeuvre commands = replay_of(run, "run"), belts = replay_measured_of(run, "run");
+  CHECK(moving_alike(robots, commands).size() == robots.size());
+  const std::vector<physics::RobotDescription> alike = moving_alike(robots, belts);
+  CHECK(alike.size() == robots.size() - 2);  // encoder_scale, encoder_asymmetry
+  physics::RobotDescription late = kenaf;
+  for (physics::SensorDescription& sensor : late.sensors)
+    if (sensor.type == physics::SensorType::tachometer) sensor.delay_s += 0.05;
+  CHECK(without_reports(late, commands) == without_reports(kenaf, commands));
+  CHECK_FALSE(without_reports(late, belts) == without_reports(kenaf, belts));
+
+  const std::vector<RollOut> together = roll_outs(alike, flat(), belts, exact());
+  for (std::size_t r = 0; r < alike.size(); ++r)
+    CHECK(same_bits(roll_out(alike[r], flat(), belts, exact()).run, together[r].run));
+  CHECK_THROWS_WITH(roll_outs({}, flat(), belts, exact()), Contains("no robot"));
 }

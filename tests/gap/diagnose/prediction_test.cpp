@@ -74,6 +74,24 @@ TEST_CASE("A run is simulated once for all stages that are compared in the same 
   CHECK(another.shifts(slippery, Passage::body_to_sensor, Fidelity::every_run)[0][0] == of_sensor[0]);
 }
 
+TEST_CASE("What differs in its sensors alone shares a simulation, with the bits of one of its own") {
+  const TurningRobot robot;
+  Predictor predictor = robot.predictor();
+  std::vector<Variation> all(4, predictor.unvaried());
+  all[0].robot.effects.gyro_scale = 1.05;
+  all[1].robot.effects.tracking_delay_s = 0.1;
+  all[2].robot.effects.friction_across_scale = 0.5;
+  all[3].robot.effects.friction_across_scale = 0.5;
+  all[3].robot.effects.gyro_bias_z_radps = 0.02;
+  for (const Passage passage : {Passage::drive_to_body, Passage::body_to_sensor}) {
+    const std::vector<Shift> together = robot.predictor().shifts(all, passage, Fidelity::every_run);
+    for (std::size_t v = 0; v < all.size(); ++v) {
+      Predictor alone = robot.predictor();
+      CHECK(alone.shifts({&all[v], 1}, passage, Fidelity::every_run)[0][0] == together[v][0]);
+    }
+  }
+}
+
 TEST_CASE("What differs in anything is simulated anew, and what is asked for twice at once is simulated once") {
   const TurningRobot robot;
   Predictor predictor = robot.predictor();

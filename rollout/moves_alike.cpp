@@ -1,0 +1,30 @@
+#include "rollout/moves_alike.hpp"
+
+#include "physics/effects.hpp"
+
+namespace kenaf::rollout {
+namespace {
+
+using physics::SensorType;
+
+bool is_of_drives(const physics::SensorDescription& sensor) {
+  return sensor.type == SensorType::encoder || sensor.type == SensorType::tachometer ||
+         sensor.type == SensorType::drives;
+}
+
+}  // namespace
+
+physics::RobotDescription without_reports(physics::RobotDescription robot, const Manoeuvre& manoeuvre) {
+  const bool by_reports = manoeuvre.measured || (manoeuvre.start && manoeuvre.start->motion);
+  std::erase_if(robot.sensors,
+                [&](const physics::SensorDescription& sensor) { return !by_reports || !is_of_drives(sensor); });
+  for (const physics::EffectInfo& effect : physics::effect_catalogue()) {
+    if (effect.stage != physics::Stage::sensor) continue;
+    if (by_reports && effect.name.starts_with("encoder_")) continue;
+    for (const physics::EffectParameter& parameter : effect.parameters)
+      robot.effects.*parameter.value = parameter.neutral;
+  }
+  return robot;
+}
+
+}  // namespace kenaf::rollout
