@@ -14,7 +14,8 @@ bool is_of_drives(const physics::SensorDescription& sensor) {
 
 }  // namespace
 
-physics::RobotDescription without_reports(physics::RobotDescription robot, const Manoeuvre& manoeuvre) {
+physics::RobotDescription as_it_moves(physics::RobotDescription robot, const physics::WorldDescription& world,
+                                      const Manoeuvre& manoeuvre) {
   const bool by_reports = manoeuvre.measured || (manoeuvre.start && manoeuvre.start->motion);
   std::erase_if(robot.sensors,
                 [&](const physics::SensorDescription& sensor) { return !by_reports || !is_of_drives(sensor); });
@@ -24,6 +25,8 @@ physics::RobotDescription without_reports(physics::RobotDescription robot, const
     for (const physics::EffectParameter& parameter : effect.parameters)
       robot.effects.*parameter.value = parameter.neutral;
   }
+  if (world.boxes.empty() && world.meshes.empty())  // all that with_terrain_effects() moves or raises
+    robot.effects.obstacle_height_m = robot.effects.obstacle_position_m = 0;
   return robot;
 }
 

@@ -97,8 +97,7 @@ std::vector<runs::Run> Predictor::simulate(Replay replay, std::size_t run,
   std::vector<physics::RobotDescription> robots;
   for (const Variation* variation : variations) robots.push_back(variation->robot);
   std::vector<runs::Run> result;
-  for (rollout::RollOut& roll_out :
-       rollout::roll_outs(robots, observations_.worlds[observations_.runs[run].world], manoeuvre, options))
+  for (rollout::RollOut& roll_out : rollout::roll_outs(robots, world_of(run), manoeuvre, options))
     result.push_back(std::move(roll_out.run));
   return result;
 }
@@ -115,6 +114,10 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
 Replay Predictor::replay_of(Passage passage, std::size_t run) const {
   const bool by_commands = passage == Passage::command_to_drive || !observations_.runs[run].measured;
   return by_commands ? Replay::commands : Replay::belts;
+}
+
+const physics::WorldDescription& Predictor::world_of(std::size_t run) const {
+  return observations_.worlds[observations_.runs[run].world];
 }
 
 const rollout::Manoeuvre& Predictor::manoeuvre_of(Replay replay, std::size_t run) const {
@@ -163,7 +166,8 @@ std::vector<std::vector<RollOut>> Predictor::alike_in_motion(const std::set<Roll
         groups.empty() || groups.back().front().replay != one.replay || groups.back().front().run != one.run;
     if (is_next_run) moving.clear(), first = groups.size();
     Variation variation = known_.variation(one.variation);
-    variation.robot = rollout::without_reports(std::move(variation.robot), manoeuvre_of(one.replay, one.run));
+    variation.robot =
+        rollout::as_it_moves(std::move(variation.robot), world_of(one.run), manoeuvre_of(one.replay, one.run));
     variation.samples_late = 0;
     const auto place = static_cast<std::size_t>(std::ranges::find(moving, variation) - moving.begin());
     if (place == moving.size()) {

@@ -69,6 +69,7 @@ class Predictor {
 
  private:
   Replay replay_of(Passage passage, std::size_t run) const;
+  const physics::WorldDescription& world_of(std::size_t run) const;
   const rollout::Manoeuvre& manoeuvre_of(Replay replay, std::size_t run) const;
   // The reports of variations that move alike.
   std::vector<runs::Run> simulate(Replay replay, std::size_t run, std::span<const Variation* const> variations) const;

@@ -234,11 +234,11 @@ std::vector<physics::RobotDescription> with_each_sensor_effect(const physics::Ro
   return robots;
 }
 
-// Those that move as the first one does.
+// Those that move on flat ground as the first one does.
 std::vector<physics::RobotDescription> moving_alike(std::vector<physics::RobotDescription> robots,
                                                     const Manoeuvre& manoeuvre) {
-  const physics::RobotDescription moves = without_reports(robots.front(), manoeuvre);
-  std::erase_if(robots, [&](const auto& robot) { return !(without_reports(robot, manoeuvre) == moves); });
+  const physics::RobotDescription moves = as_it_moves(robots.front(), flat(), manoeuvre);
+  std::erase_if(robots, [&](const auto& robot) { return !(as_it_moves(robot, flat(), manoeuvre) == moves); });
   return robots;
 }
 
@@ -276,11 +276,23 @@ TEST_CASE("A replay of belts takes encoders' errors out of the motion: robots wi
   physics::RobotDescription late = kenaf;
   for (physics::SensorDescription& sensor : late.sensors)
     if (sensor.type == physics::SensorType::tachometer) sensor.delay_s += 0.05;
-  CHECK(without_reports(late, commands) == without_reports(kenaf, commands));
-  CHECK_FALSE(without_reports(late, belts) == without_reports(kenaf, belts));
+  CHECK(as_it_moves(late, flat(), commands) == as_it_moves(kenaf, flat(), commands));
+  CHECK_FALSE(as_it_moves(late, flat(), belts) == as_it_moves(kenaf, flat(), belts));
 
   const std::vector<RollOut> together = roll_outs(alike, flat(), belts, exact());
   for (std::size_t r = 0; r < alike.size(); ++r)
     CHECK(same_bits(roll_out(alike[r], flat(), belts, exact()).run, together[r].run));
   CHECK_THROWS_WITH(roll_outs({}, flat(), belts, exact()), Contains("no robot"));
+}
+
+TEST_CASE("Effects on obstacles change no motion where there are none, and count where there are") {
+  const auto kenaf = physics::load_robot("kenaf");
+  physics::RobotDescription higher = kenaf;
+  higher.effects.obstacle_height_m = 0.02;
+  const Manoeuvre ahead = straight(0.2, 1), climb = load_manoeuvre("step-100");
+  CHECK(as_it_moves(higher, flat(), ahead) == as_it_moves(kenaf, flat(), ahead));
+  CHECK(same_bits(roll_out(higher, flat(), ahead, exact()).run, roll_out(kenaf, flat(), ahead, exact()).run));
+  std::vector<std::string> unsupported;
+  const physics::WorldDescription step = physics::load_world(climb.world, unsupported);
+  CHECK_FALSE(as_it_moves(higher, step, climb) == as_it_moves(kenaf, step, climb));
 }
