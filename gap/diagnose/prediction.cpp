@@ -145,6 +145,21 @@ VectorXd Predictor::values_in(Replay replay, std::size_t run, const runs::Run& s
   return all;
 }
 
+VectorXd Predictor::values_of_alike(const std::vector<RollOut>& roll_outs) const {
+  const Replay replay = roll_outs.front().replay;
+  const std::size_t run = roll_outs.front().run;
+  std::vector<const Variation*> variations;
+  for (const RollOut& one : roll_outs) variations.push_back(&known_.variation(one.variation));
+  const std::vector<runs::Run> reports = simulate(replay, run, variations);
+  VectorXd all;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const VectorXd values = values_in(replay, run, reports[i], variations[i]->samples_late);
+    if (i == 0) all.resize(std::ssize(reports) * values.size());
+    all.segment(static_cast<Index>(i) * values.size(), values.size()) = values;
+  }
+  return all;
+}
+
 StageValues Predictor::by_stage(Replay replay, std::size_t run, const VectorXd& values) const {
   StageValues of_stage;
   Index first = 0;
@@ -195,19 +210,7 @@ std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::sp
   for (const Asked& one : asked)
     if (is_measured(one.run) && known_.find(roll_out_of(one)) == nullptr) unknown.insert(roll_out_of(one));
   const std::vector<std::vector<RollOut>> jobs = alike_in_motion(unknown);
-  const std::vector<VectorXd> simulated = all_of(jobs.size(), [&](std::size_t i) {
-    std::vector<const Variation*> variations_of_job;
-    for (const RollOut& one : jobs[i]) variations_of_job.push_back(&known_.variation(one.variation));
-    const auto [replay, run, any] = jobs[i].front();
-    const std::vector<runs::Run> reports = simulate(replay, run, variations_of_job);
-    VectorXd all;
-    for (std::size_t k = 0; k < reports.size(); ++k) {
-      const VectorXd values = values_in(replay, run, reports[k], variations_of_job[k]->samples_late);
-      all.conservativeResize(all.size() + values.size());
-      all.tail(values.size()) = values;
-    }
-    return all;
-  });
+  const std::vector<VectorXd> simulated = all_of(jobs.size(), [&](std::size_t i) { return values_of_alike(jobs[i]); });
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const Index size = simulated[i].size() / std::ssize(jobs[i]);
     for (std::size_t k = 0; k < jobs[i].size(); ++k)

@@ -78,6 +78,8 @@ class Predictor {
   std::vector<std::vector<RollOut>> alike_in_motion(const std::set<RollOut>& roll_outs) const;
   // Values of all stages that are compared in the replay, concatenated.
   Eigen::VectorXd values_in(Replay replay, std::size_t run, const runs::Run& simulated, double samples_late) const;
+  // The same of roll-outs that move alike, one after the other.
+  Eigen::VectorXd values_of_alike(const std::vector<RollOut>& roll_outs) const;
   StageValues by_stage(Replay replay, std::size_t run, const Eigen::VectorXd& values) const;
   // A run with a variation, given by its index.
   struct Asked {
