@@ -210,9 +210,9 @@ MatrixXd GroupWhitener::operator()(MatrixXd columns) const {
   return columns;
 }
 
-VectorXd GroupWhitener::local_amounts(VectorXd residual) const {
+VectorXd GroupWhitener::local_amounts(const VectorXd& residual) const {
   if (squares_.cols() == 0) return {};
-  MatrixXd white = std::move(residual);
+  MatrixXd white = residual;
   whiten_series(white);
   MatrixXd normal = squares_;
   normal.diagonal().array() += 1;

@@ -39,7 +39,7 @@ class GroupWhitener {
   // The group's shared shapes, whitened; those of the numbers are scaled by numbers_off.
   const Eigen::MatrixXd& shared() const { return shared_; }
   // The most likely amounts of the group's local shapes in a residual.
-  Eigen::VectorXd local_amounts(Eigen::VectorXd residual) const;
+  Eigen::VectorXd local_amounts(const Eigen::VectorXd& residual) const;
 
  private:
   struct Part {  // a series, with the local shapes that are not 0 in it, by their columns: most act in one series
