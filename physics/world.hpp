@@ -71,9 +71,9 @@ class World {
   // currents are those that the motion requires. teleport() and reset() end it. Throws std::invalid_argument if a value
   // is not finite.
   void prescribe(RobotId id, const PrescribedMotion& motion);
-  // Adds instruments to a robot: the sensors of `description`, with its effects on them and its encoders' resolution,
-  // report the motion of the robot. They report what the sensors of a robot with that description would if it moved
-  // like this one; the rest of the description counts for nothing. Returns their number: 1 for the first, as the
+  // Adds instruments to a robot: the sensors of `description` report what they would on a robot of that description if
+  // it moved like this one. So its effects on sensors count, and what sensors measure by, as the sprocket's radius and
+  // the resolution of encoders and servos; nothing else of it does. Returns their number: 1 for the first, as the
   // robot's own sensors are number 0. They stay until the robot is removed.
   std::size_t add_instruments(RobotId id, const RobotDescription& description);
   // Restarts the integration of a sensor, an index into the description's sensors: encoder counts, odometry and

@@ -51,6 +51,14 @@ double filter(std::span<const double> decays, const Eigen::Ref<const Eigen::Vect
   return log_determinant;
 }
 
+// The standardised innovation of a bin: what the process, whose mean `state` follows the series, did not predict.
+double innovation_of(double value, double& state, double decay, double gain, double inverse_sigma) {
+  state *= decay;
+  const double innovation = value - state;
+  state += gain * innovation;
+  return innovation * inverse_sigma;
+}
+
 // Minus twice the log-likelihood of one series; `decays`: of its bins. `white` is overwritten.
 double minus_two_log_likelihood(const SeriesOfKind& series, std::span<const double> decays, double sigma,
                                 Eigen::VectorXd& white) {
@@ -59,10 +67,7 @@ double minus_two_log_likelihood(const SeriesOfKind& series, std::span<const doub
   const double log_determinant =
       filter(decays, series.variance, sigma, [&](std::size_t i, double gain, double inverse_sigma) {
         const auto row = static_cast<Eigen::Index>(i);
-        state *= decays[i];
-        const double innovation = series.value[row] - state;
-        state += gain * innovation;
-        white[row] = innovation * inverse_sigma;
+        white[row] = innovation_of(series.value[row], state, decays[i], gain, inverse_sigma);
       });
   return white.squaredNorm() + log_determinant;
 }
@@ -83,10 +88,7 @@ void SeriesWhitener::whiten(Eigen::Ref<Eigen::MatrixXd> series) const {
     double state = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       double& value = series(static_cast<Eigen::Index>(i), c);
-      state *= steps_[i].decay;
-      const double innovation = value - state;
-      state += steps_[i].gain * innovation;
-      value = innovation * steps_[i].inverse_sigma;
+      value = innovation_of(value, state, steps_[i].decay, steps_[i].gain, steps_[i].inverse_sigma);
     }
   }
 }

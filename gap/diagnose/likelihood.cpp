@@ -123,9 +123,16 @@ double within_reach(const SharedProducts& whole, Index numbers, double off) {
 }
 
 // Amounts of all shared shapes, in their sigmas.
-VectorXd most_likely_amounts(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
-  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+VectorXd most_likely_amounts(const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual) {
   return amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
+}
+
+GroupVectors without_shared_shapes(const StageData& data, const std::vector<GroupWhitener>& whiteners,
+                                   const GroupVectors& residual, double numbers_off) {
+  const VectorXd amounts = most_likely_amounts(whiteners, residual);
+  GroupVectors rest = residual;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) rest[g] -= shared_shapes(data.groups[g], numbers_off) * amounts;
+  return rest;
 }
 
 // Subtracts local shapes at their most likely amounts from a residual; noise and discrepancy remain.
@@ -292,25 +299,22 @@ std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& r
 
 GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
                                    const Discrepancies& discrepancies) {
-  const VectorXd amounts = most_likely_amounts(data, residual, discrepancies);
-  GroupVectors rest = residual;
-  for (std::size_t g = 0; g < data.groups.size(); ++g)
-    rest[g] -= shared_shapes(data.groups[g], discrepancies.numbers_off) * amounts;
-  return rest;
+  return without_shared_shapes(data, whiteners_of(data, discrepancies), residual, discrepancies.numbers_off);
 }
 
 GroupVectors without_open_shapes(const StageData& data, const GroupVectors& residual,
                                  const Discrepancies& discrepancies) {
-  GroupVectors rest = without_shared_shapes(data, residual, discrepancies);
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+  GroupVectors rest = without_shared_shapes(data, whiteners, residual, discrepancies.numbers_off);
   for (std::size_t g = 0; g < data.groups.size(); ++g)
-    rest[g] = without_local_shapes(data.groups[g], GroupWhitener(data.groups[g], discrepancies), std::move(rest[g]));
+    rest[g] = without_local_shapes(data.groups[g], whiteners[g], std::move(rest[g]));
   return rest;
 }
 
 VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const Index numbers = data.groups.front().number_shapes.cols();
   if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);
-  const VectorXd sigmas = most_likely_amounts(data, residual, discrepancies).tail(numbers);
+  const VectorXd sigmas = most_likely_amounts(whiteners_of(data, discrepancies), residual).tail(numbers);
   return discrepancies.numbers_off * sigmas.cwiseMax(-kOrdinary_sigma).cwiseMin(kOrdinary_sigma);
 }
 

@@ -74,7 +74,7 @@ TEST_CASE("A run is simulated once for all stages that are compared in the same 
   CHECK(another.shifts(slippery, Passage::body_to_sensor, Fidelity::every_run)[0][0] == of_sensor[0]);
 }
 
-TEST_CASE("What differs in its sensors alone shares a simulation, with the bits of one of its own") {
+TEST_CASE("What differs in its sensors alone and is asked for together has the bits of a simulation of its own") {
   const TurningRobot robot;
   Predictor predictor = robot.predictor();
   std::vector<Variation> all(4, predictor.unvaried());
