@@ -24,8 +24,16 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+// Compiled by GCC, Embree's kernels for AVX-512 take bits beyond a packet's 16 for rays, and never end
+// (github.com/RenderKit/embree, pull request 574). They are left out.
+#if defined(__x86_64__)
+constexpr char kDevice[] = "threads=1,start_threads=0,max_isa=avx2";
+#else
+constexpr char kDevice[] = "threads=1,start_threads=0";
+#endif
+
 Owned<RTCDevice> make_device() {
-  Owned<RTCDevice> device(rtcNewDevice("threads=1,start_threads=0"));
+  Owned<RTCDevice> device(rtcNewDevice(kDevice));
   if (!device) throw std::runtime_error("camera: Embree finds no way to run on this processor");
   return device;
 }
