@@ -31,8 +31,9 @@ struct RobotInScene {
   };
   std::vector<std::vector<MissionLink>> mission;
   std::string fault;
-  RobotTruth last_whole{};  // the last one before the fault
-  DriveCurrents currents;   // 0 after the fault
+  RobotTruth last_whole{};                 // the last one before the fault
+  DriveCurrents currents;                  // 0 after the fault
+  std::vector<Eigen::Vector3d> touches_W;  // of the last step; none after a fault
 
   void forget_motion() {
     for (SensorSet& set : sensors) set.forget_motion();
@@ -89,7 +90,7 @@ struct World::Implementation {
   std::unique_ptr<Scene> scene;
   std::map<RobotId, RobotEntry> robots;  // declared after the scene, which they leave before it is destroyed
   std::map<BoxId, Box> boxes;
-  std::vector<Eigen::Vector3d> touches;
+  std::vector<Scene::Touch> touches;  // of all robots, in a step
 
   double time_s() const { return static_cast<double>(steps) * settings.time_step_s; }
 
@@ -120,8 +121,9 @@ struct World::Implementation {
     }
     where.place_free(*robot.model, X_WB, true);
     constexpr std::size_t kManyTouches = 256;  // so that a step need not allocate
-    touches.reserve(kManyTouches);
-    record(id, robot, where, now_s);
+    robot.touches_W.reserve(kManyTouches);
+    touches.reserve(kManyTouches * (robots.size() + 1));
+    record(robot, now_s);
     return robot;
   }
 
@@ -133,10 +135,11 @@ struct World::Implementation {
     truth.w_WB_radps.setZero();
     truth.track_mps = truth.track_force_n = {};
     truth.flipper_radps = truth.flipper_nm = {};
+    entry.touches_W.clear();
   }
 
   // The robot's truth, faults and currents after a step, and its sample for the sensors.
-  void record(RobotId id, RobotInScene& entry, const Scene& where, double now_s) {
+  void record(RobotInScene& entry, double now_s) {
     const RobotModel& model = *entry.model;
     const double dt = settings.time_step_s;
     if (entry.fault.empty()) {
@@ -153,15 +156,24 @@ struct World::Implementation {
           {model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
           {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
            model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};
-    sample(id, entry, entry.sensors, where, now_s);
+    sample(entry, entry.sensors, now_s);
   }
 
   // Takes a sample for some of the robot's sensors.
-  void sample(RobotId id, const RobotInScene& entry, std::span<SensorSet> sensors, const Scene& where, double now_s) {
-    touches.clear();
-    if (entry.fault.empty() && std::ranges::any_of(sensors, &SensorSet::has_touch)) where.touches(id, touches);
+  static void sample(const RobotInScene& entry, std::span<SensorSet> sensors, double now_s) {
     for (SensorSet& set : sensors)
-      set.record(entry.last_whole, now_s, entry.currents.track_a, entry.currents.flipper_a, touches);
+      set.record(entry.last_whole, now_s, entry.currents.track_a, entry.currents.flipper_a, entry.touches_W);
+  }
+
+  // In one pass over the contacts, which are those of all robots.
+  void find_touches() {
+    for (auto& [id, entry] : robots) entry.touches_W.clear();
+    scene->touches(touches);
+    auto robot = robots.end();
+    for (const Scene::Touch& touch : touches) {
+      if (robot == robots.end() || robot->first != touch.robot) robot = robots.find(touch.robot);
+      robot->second.touches_W.push_back(touch.p_W);
+    }
   }
 
   // Puts loose boxes whose poses a faulty robot has made invalid back to their initial poses.
@@ -205,6 +217,7 @@ struct World::Implementation {
       if (entry.fault.empty()) entry.model->before_step(dt);
     scene->step(dt);
     ++steps;
+    find_touches();
     bool any_fault = false;  // in this step
     for (auto& [id, entry] : robots) {
       const bool was_whole = entry.fault.empty();
@@ -216,7 +229,7 @@ struct World::Implementation {
           link.angle_rad += std::clamp(link.target_rad - link.angle_rad, -most, most);
         }
       }
-      record(id, entry, *scene, time_s());
+      record(entry, time_s());
       any_fault = any_fault || (was_whole && !entry.fault.empty());
     }
     if (any_fault) put_back_boxes();
@@ -312,8 +325,9 @@ void World::teleport(RobotId id, const Pose& X_WB) {
     return;
   }
   impl_->scene->place_free(*entry.model, X_WB_unit, false);
+  entry.touches_W.clear();
   entry.forget_motion();
-  impl_->record(id, entry, *impl_->scene, impl_->time_s());
+  impl_->record(entry, impl_->time_s());
 }
 
 void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command) {
@@ -327,7 +341,7 @@ void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Co
   if (!entry.fault.empty()) return;
   entry.model->set_in_motion(motion, command);
   entry.forget_motion();  // the jump in speed is no acceleration
-  impl_->record(id, entry, *impl_->scene, impl_->time_s());
+  impl_->record(entry, impl_->time_s());
 }
 
 void World::prescribe(RobotId id, const PrescribedMotion& motion) {
@@ -341,7 +355,7 @@ std::size_t World::add_instruments(RobotId id, const RobotDescription& descripti
   RobotEntry& entry = impl_->robot(id);
   std::list<RobotDescription> added{description};  // joins the others when its sensors have, which cannot fail
   SensorSet sensors = impl_->sensors_of(added.front(), entry.name);
-  impl_->sample(id, entry, {&sensors, 1}, *impl_->scene, impl_->time_s());
+  impl_->sample(entry, {&sensors, 1}, impl_->time_s());
   entry.sensors.push_back(std::move(sensors));
   entry.instruments.splice(entry.instruments.end(), added);
   return entry.instruments.size();

@@ -251,12 +251,15 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& from_W, const Eigen
   return RayHit{closest.m_closestHitFraction * max_m, from_bullet(closest.m_hitNormalWorld)};
 }
 
-void Scene::touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const {
+void Scene::touches(std::vector<Touch>& out) const {
   out.clear();
-  const auto id = static_cast<std::uint32_t>(robot);
-  for (const Contact& contact : solver_.contacts())
-    if (contact.pressed() && (contact.collider_a().robot == id || contact.collider_b().robot == id))
-      out.push_back(from_bullet(contact.p_W()));
+  for (const Contact& contact : solver_.contacts()) {
+    if (!contact.pressed()) continue;
+    const std::uint32_t a = contact.collider_a().robot, b = contact.collider_b().robot;  // 0: of no robot
+    const Eigen::Vector3d p_W = from_bullet(contact.p_W());
+    if (a != 0) out.push_back({RobotId{a}, p_W});
+    if (b != 0 && b != a) out.push_back({RobotId{b}, p_W});
+  }
 }
 
 void Scene::contacts(RobotId robot, double time_step_s, std::vector<ContactPoint>& out) const {

@@ -40,8 +40,12 @@ class Scene {
   void place_free(RobotModel& robot, Pose X_WB, bool start_joints);
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
                                  std::uint32_t ignored_robot) const;
-  // The points where a robot is pressed upon, in W.
-  void touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const;
+  struct Touch {
+    RobotId robot;
+    Eigen::Vector3d p_W;
+  };
+  // The points where robots are pressed upon; one between two robots is there for both.
+  void touches(std::vector<Touch>& out) const;
   // See World; the last step's length.
   void contacts(RobotId robot, double time_step_s, std::vector<ContactPoint>& out) const;
   std::size_t contact_count() const { return solver_.contacts().size(); }

@@ -27,7 +27,6 @@ class SensorSet {
 
   void read(std::uint64_t step, const RayCaster& cast, std::vector<SensorSample>& out);
   void reset(std::size_t sensor, const std::optional<GroundTruthReading>& pose);
-  bool has_touch() const { return has_touch_; }
 
  private:
   struct Entry {

@@ -228,6 +228,24 @@ TEST_CASE("A touch sensor feels an obstacle at its mount, and not the ground") {
   CHECK_FALSE(read_one<TouchReading>(world, id).touched);
 }
 
+TEST_CASE("Two robots that meet both feel it, one beside them does not") {
+  SensorDescription sensor = sensor_of(SensorType::touch);
+  sensor.X_BS.p = {0.29, 0, 0};
+  World world(ground(), {}, 1);
+  const RobotId beside = world.add_robot(with_sensor(sensor), "beside", {{0, 3, 0}});
+  const RobotId a = world.add_robot(with_sensor(sensor), "a", {});
+  const RobotId b = world.add_robot(with_sensor(sensor), "b", {{0.7, 0, 0}, rotation_from({0, 0, std::numbers::pi})});
+  for (const RobotId id : {beside, a, b}) world.set_command(id, drive(0, 0, 1.8, 1.8));
+  run(world, 1);
+  for (const RobotId id : {beside, a, b}) CHECK_FALSE(read_one<TouchReading>(world, id).touched);
+  // the tracks' fronts are 0.29 m ahead of the centres, so 0.12 m apart
+  world.set_command(a, drive(0.1, 0.1, 1.8, 1.8));
+  run(world, 1.5);
+  CHECK(read_one<TouchReading>(world, a).touched);
+  CHECK(read_one<TouchReading>(world, b).touched);
+  CHECK_FALSE(read_one<TouchReading>(world, beside).touched);
+}
+
 TEST_CASE("Currents follow force, the battery sags with them and runs down") {
   RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
   World world(ground(), {}, 1);
