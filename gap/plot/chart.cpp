@@ -150,8 +150,12 @@ std::string discs(const Chart& chart, const View& view) {
   for (const Disc& disc : chart.discs) {
     if (!disc.at.allFinite()) continue;
     const Point at = view(disc.at);
-    fmt::format_to(out, "<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>\n",
-                   disc.filled ? "disc" : "ring", ink_class(disc.ink), at.x(), at.y(), disc.radius_px);
+    std::string circle =
+        fmt::format("<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"", disc.filled ? "disc" : "ring",
+                    ink_class(disc.ink), at.x(), at.y(), disc.radius_px);
+    circle += disc.hint.empty() ? "/>" : fmt::format("><title>{}</title></circle>", escaped(disc.hint));
+    if (!disc.link.empty()) circle = fmt::format("<a href=\"{}\">{}</a>", escaped(disc.link), circle);
+    svg += circle + "\n";
     if (disc.label.empty()) continue;
     const double half_px = kLetter_px * static_cast<double>(disc.label.size()) / 2, above = at.y() - disc.radius_px - 5;
     fmt::format_to(out, "<text class=\"halo middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
@@ -221,7 +225,7 @@ svg.chart .line.faint { stroke: var(--faint); }
 svg.chart .line.ground { stroke: var(--ground-edge); }
 svg.chart .disc { fill-opacity: 0.75; }
 svg.chart .whisker { stroke: var(--ink); stroke-width: 1.3; }
-svg.chart .ring { fill: none; stroke-width: 1.8; }
+svg.chart .ring { fill: none; stroke-width: 1.8; pointer-events: all; }
 svg.chart .disc.real { fill: var(--real); }
 svg.chart .disc.sim, svg.chart .bar.sim { fill: var(--sim); }
 svg.chart .disc.third, svg.chart .bar.third { fill: var(--third); }

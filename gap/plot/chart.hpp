@@ -43,6 +43,8 @@ struct Disc {
   bool filled = true;       // otherwise a ring
   std::string label = {};   // above it, or below if there is no room
   std::string legend = {};  // empty: not in the legend
+  std::string hint = {};    // shown under the pointer
+  std::string link = {};    // followed by a click on it; empty: none
 };
 
 struct Chart {

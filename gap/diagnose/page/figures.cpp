@@ -237,8 +237,9 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
   return chart;
 }
 
-Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage) {
+Chart places_figure(const Diagnosis& d, const Overlay& overlay, std::span<const Moment> moments, std::size_t s) {
   // the real path as background
+  const StageDiagnosis& stage = d.stages[s];
   const runs::Run& real = d.observations.runs[overlay.run].run;
   const bool from_side = seen_from_side(real);
   const std::vector<Place> places = places_of(real);
@@ -264,12 +265,14 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagn
     bool first = true;
     for (const PhaseGap& phase : where.phases) {
       if (phase.group != overlay.group || phase.share * scale <= 0) continue;
-      plot::Disc disc{place_of(places, phase, from_side),
-                      kWholeGap_px * std::sqrt(phase.share * scale),
-                      before ? Ink::sim : Ink::third,
-                      !before,
-                      {},
-                      std::exchange(first, false) ? (before ? "before" : "after") : ""};
+      plot::Disc disc{.at = place_of(places, phase, from_side),
+                      .radius_px = kWholeGap_px * std::sqrt(phase.share * scale),
+                      .ink = before ? Ink::sim : Ink::third,
+                      .filled = !before,
+                      .legend = std::exchange(first, false) ? (before ? "before" : "after") : "",
+                      .hint = fmt::format("{} {}, {:.1f} to {:.1f} s", phase.phase, percent(phase.share * scale),
+                                          phase.from_s, phase.to_s),
+                      .link = link_to_phase(d, moments, s, phase)};
       const bool has_room = std::ranges::none_of(
           labelled, [&](const Point& other) { return std::abs(other.x() - disc.at.x()) < kApart * width_m; });
       if (before && phase.share >= kLabelled && disc.at.allFinite() && has_room) {

@@ -3,6 +3,9 @@
 // Thread safety: pure functions.
 #pragma once
 
+#include <span>
+
+#include "gap/diagnose/page/moments.hpp"
 #include "gap/diagnose/page/overlays.hpp"
 #include "gap/plot/chart.hpp"
 
@@ -22,7 +25,9 @@ plot::Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, 
 // The rms of all channels over time, in noise units.
 plot::Chart residual_figure(const Diagnosis& d, const Overlay& overlay);
 
-// The path with the gap of each phase of a stage at the place of the phase, before (rings) and after (discs).
-plot::Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage);
+// The path with the gap of each phase of a stage at the place of the phase, before (rings) and after (discs); each
+// links to the moment of its phase.
+plot::Chart places_figure(const Diagnosis& d, const Overlay& overlay, std::span<const Moment> moments,
+                          std::size_t stage);
 
 }  // namespace kenaf::gap::diagnose

@@ -180,18 +180,21 @@ std::string run_id(std::size_t group) {
   return fmt::format("run-{}", group + 1);
 }
 
-std::string link_to_phase(const Diagnosis& d, std::span<const Moment> moments, std::size_t stage, std::size_t phase) {
-  const PhaseGap& place = d.stages[stage].where.phases[phase];
-  auto found = std::ranges::find_if(
-      moments, [&](const Moment& moment) { return moment.stage == stage && moment.phase == phase; });
+std::string link_to_phase(const Diagnosis& d, std::span<const Moment> moments, std::size_t stage,
+                          const PhaseGap& phase) {
+  // phases before and after correction begin alike
+  auto found = std::ranges::find_if(moments, [&](const Moment& moment) {
+    return moment.stage == stage && moment.group == phase.group &&
+           d.stages[stage].where.phases[moment.phase].from_s == phase.from_s;
+  });
   if (found == moments.end())
     found = std::ranges::find_if(moments, [&](const Moment& moment) {
-      return moment.group == place.group && moment.at_s >= place.from_s && moment.at_s <= place.to_s;
+      return moment.group == phase.group && moment.at_s >= phase.from_s && moment.at_s <= phase.to_s;
     });
   const std::vector<std::size_t> drawn = shown_groups(d);
-  if (found == moments.end() && std::ranges::find(drawn, place.group) == drawn.end()) return {};
+  if (found == moments.end() && std::ranges::find(drawn, phase.group) == drawn.end()) return {};
   return "#" +
-         (found == moments.end() ? run_id(place.group) : moment_id(static_cast<std::size_t>(found - moments.begin())));
+         (found == moments.end() ? run_id(phase.group) : moment_id(static_cast<std::size_t>(found - moments.begin())));
 }
 
 std::string play_command(const Diagnosis& d, std::string_view file, double at_s, std::string_view report_folder) {

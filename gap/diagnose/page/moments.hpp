@@ -47,9 +47,10 @@ std::vector<Moment> moments_of(const Diagnosis& d, std::span<const Overlay> over
 std::string moment_id(std::size_t index);
 std::string run_id(std::size_t group);
 
-// The link of a phase: to its own moment, else to one of another stage within it, else to its run. Empty
-// if the page does not draw that.
-std::string link_to_phase(const Diagnosis& d, std::span<const Moment> moments, std::size_t stage, std::size_t phase);
+// The link of a phase of the gap of a stage, before or after correction: to its own moment, else to one of another
+// stage within it, else to its run. Empty if the page does not draw that.
+std::string link_to_phase(const Diagnosis& d, std::span<const Moment> moments, std::size_t stage,
+                          const PhaseGap& phase);
 
 // The command that shows the whole run, from that moment on: "kenaf-gap play real --report diagnosis --run run-000.csv
 // --at 3.4". Words are quoted for a shell. `report_folder`: empty if it is not known.

@@ -40,14 +40,8 @@ std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, std:
     for (const PhaseGap& phase : where.phases) {
       if (phase.group != overlay.group) continue;
       const double share = phase.share * scale;
-      const auto before = std::ranges::find_if(stage.where.phases, [&](const PhaseGap& other) {
-        return other.group == phase.group && other.from_s == phase.from_s;
-      });
-      std::string link;
-      if (before != stage.where.phases.end())
-        link = link_to_phase(d, moments, s, static_cast<std::size_t>(before - stage.where.phases.begin()));
       strip.spans.push_back({phase.from_s, phase.to_s, most > 0 ? share / most : 0, std::string(phase.phase),
-                             percent(share), std::move(link)});
+                             percent(share), link_to_phase(d, moments, s, phase)});
     }
     std::ranges::sort(strip.spans, {}, &plot::StripSpan::from);
     chart.strips.push_back(std::move(strip));
@@ -62,7 +56,7 @@ std::string phase_table(const Diagnosis& d, std::size_t s, std::span<const Momen
   for (std::size_t p = 0; p < stage.where.phases.size(); ++p) {
     const PhaseGap& phase = stage.where.phases[p];
     if (table.rows.size() == kMostPhases || phase.share < 0.005) break;
-    table.row_links.push_back(link_to_phase(d, moments, s, p));
+    table.row_links.push_back(link_to_phase(d, moments, s, phase));
     const auto left = std::ranges::find_if(stage.where_left.phases, [&](const PhaseGap& other) {
       return other.group == phase.group && other.from_s == phase.from_s;
     });
@@ -82,11 +76,13 @@ bool moves(const plot::Chart& chart) {
   return (high - low).maxCoeff() > kStays_m;
 }
 
-std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, const StageDiagnosis& stage) {
+std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, std::span<const Moment> moments,
+                 std::size_t s) {
+  const StageDiagnosis& stage = d.stages[s];
   std::string figures;
   std::vector<std::string> staying;
   for (const Overlay& overlay : overlays) {
-    const plot::Chart chart = places_figure(d, overlay, stage);
+    const plot::Chart chart = places_figure(d, overlay, moments, s);
     if (moves(chart))
       figures += to_svg(chart);
     else
@@ -136,7 +132,7 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays,
       html += time_map(d, overlays, moments, s, stage.where_left, share_left(stage),
                        fmt::format("After: what is left, {} of the squared gap before", percent(share_left(stage))));
     html += phase_table(d, s, moments);
-    if (s == *main) html += maps(d, overlays, stage);
+    if (s == *main) html += maps(d, overlays, moments, s);
   }
   return html;
 }

@@ -73,11 +73,11 @@ TEST_CASE("Moments are the worst quarters of a second in the phases with most of
   CHECK(climb.bodies[2].poses[climb.now]->p_WB_m.x() == Approx(0.69));
 
   // links: its own moment, one of another stage in the same phase, or else the run
-  CHECK(link_to_phase(d, moments, 0, 0) == "#moment-1");
-  CHECK(link_to_phase(d, moments, 1, 0) == "#moment-2");
-  CHECK(link_to_phase(d, moments, 0, 1) == "#moment-3");
-  CHECK(link_to_phase(d, std::span(moments).first(2), 0, 1) == "#moment-2");
-  CHECK(link_to_phase(d, {}, 0, 0) == "#run-2");
+  CHECK(link_to_phase(d, moments, 0, d.stages[0].where.phases[0]) == "#moment-1");
+  CHECK(link_to_phase(d, moments, 1, d.stages[1].where.phases[0]) == "#moment-2");
+  CHECK(link_to_phase(d, moments, 0, d.stages[0].where.phases[1]) == "#moment-3");
+  CHECK(link_to_phase(d, std::span(moments).first(2), 0, d.stages[0].where.phases[1]) == "#moment-2");
+  CHECK(link_to_phase(d, {}, 0, d.stages[0].where.phases[0]) == "#run-2");
 }
 
 TEST_CASE("A run without a measured pose has no moment, and one without a gap neither") {
@@ -161,6 +161,7 @@ TEST_CASE("A moment is a still picture, and data for the player") {
   const std::string page = diagnosis_page(d, overlays, "out");
   CHECK(fault_of_xml(page) == "");
   CHECK_THAT(page, Contains("<a href=\"#moment-1\">climb</a>") && Contains("id=\"moment-1\""));
+  CHECK_THAT(page, Contains("<a href=\"#moment-1\"><circle"));
   CHECK_THAT(page, Contains("kenaf-gap play 'real runs' --report out --run run-002.csv --at 1.38"));
   CHECK_THAT(page, Contains("Nominal and real robot: 100 mm and 5.7 degrees apart; corrected and real robot: 10 mm and "
                             "0.0 degrees apart."));

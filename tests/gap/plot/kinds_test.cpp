@@ -127,12 +127,13 @@ TEST_CASE("Names of strips get the room that they need, up to half of the chart,
 TEST_CASE("Discs stand at their places with their words, one without a place is left out") {
   Chart chart;
   chart.lines = {{{{0, 0}, {1, 1}}, Ink::faint, Stroke::solid, ""}};
-  chart.discs = {{{0.5, 0.5}, 9, Ink::sim, false, "tip", "before"},
+  chart.discs = {{{0.5, 0.5}, 9, Ink::sim, false, "tip", "before", "tip 3 %", "#run-1"},
                  {{std::numeric_limits<double>::quiet_NaN(), 0}, 7, Ink::third, true, "nowhere", ""}};
   const std::string svg = to_svg(chart);
   CHECK(fault_of_xml(svg).empty());
   CHECK_THAT(svg, Catch::Contains("class=\"ring sim\"") && Catch::Contains("r=\"9.0\"") && Catch::Contains(">tip<") &&
                       Catch::Contains(">before<"));
+  CHECK_THAT(svg, Catch::Contains("<a href=\"#run-1\"><circle") && Catch::Contains("<title>tip 3 %</title>"));
   CHECK_THAT(svg, !Catch::Contains("nan") && !Catch::Contains("nowhere"));
 }
 
