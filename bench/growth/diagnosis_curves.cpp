@@ -89,7 +89,7 @@ Growth over_effects(const fs::path& bin) {
   // The lag, which is hidden, is among the first and always searched for.
   Growth growth{"effects and numbers to look for, four runs", "s of the processors", {}, 1};
   const Words all = candidates(bin);
-  for (const std::size_t share : {4, 2, 1}) {
+  for (const std::size_t share : {4U, 2U, 1U}) {
     Words left_out;
     for (std::size_t i = 0; i < all.size(); ++i)
       if (i % share != 0 && all[i] != "drive_lag") left_out.push_back(all[i]);

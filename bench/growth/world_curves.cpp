@@ -128,7 +128,8 @@ Growth over_robots() {
     World world(level_ground(), {}, 1);
     for (int i = 0; i < robots; ++i) {
       Pose X_WB;
-      X_WB.p = {2.0 * (i % 8), 2.0 * (i / 8), 0.3};
+      const int row = i / 8, column = i % 8;
+      X_WB.p = {2.0 * column, 2.0 * row, 0.3};
       world.add_robot(load_robot("kenaf"), std::to_string(i), X_WB);
     }
     growth.points.push_back({static_cast<double>(robots), cost_of_steps(world, driving(-0.2, 0.2)).step_us});

@@ -132,7 +132,7 @@ bool fill_moment(const Diagnosis& d, const Overlay& overlay, Moment& moment) {
 // A word of a shell's command line; a path that begins with a dash is no option.
 std::string shell_word(std::string_view text, bool is_path) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:@%+=,";
-  const std::string word = (is_path && text.starts_with('-') ? "./" : "") + std::string(text);
+  std::string word = (is_path && text.starts_with('-') ? "./" : "") + std::string(text);
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

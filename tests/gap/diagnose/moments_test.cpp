@@ -159,7 +159,7 @@ TEST_CASE("A moment is a still picture, and data for the player") {
   CHECK(shape["flipper"].size() > 10);
 
   const std::string page = diagnosis_page(d, overlays, "out");
-  CHECK(fault_of_xml(page) == "");
+  CHECK(fault_of_xml(page).empty());
   CHECK_THAT(page, Contains("<a href=\"#moment-1\">climb</a>") && Contains("id=\"moment-1\""));
   CHECK_THAT(page, Contains("<a href=\"#moment-1\"><circle"));
   CHECK_THAT(page, Contains("kenaf-gap play 'real runs' --report out --run run-002.csv --at 1.38"));
