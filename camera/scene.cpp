@@ -24,8 +24,8 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Compiled by GCC, Embree's kernels for AVX-512 take bits beyond a packet's 16 for rays, and never end
-// (github.com/RenderKit/embree, pull request 574). They are left out.
+// Compiled by GCC, Embree's kernels for AVX-512 take bits beyond a packet's 16 for rays, and never end (Embree's pull
+// request 574). They are left out.
 #if defined(__x86_64__)
 constexpr char kDevice[] = "threads=1,start_threads=0,max_isa=avx2";
 #else
