@@ -4,7 +4,6 @@
 //
 // Usage: camera_cost [pictures per camera and world, default 60] [world]... Status 1: a world's mean misses the limit.
 #include <fmt/format.h>
-#include <time.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/thread_time.hpp"
 #include "camera/jpeg.hpp"
 #include "camera/renderer.hpp"
 #include "camera/robot_cameras.hpp"
@@ -24,12 +24,6 @@ namespace {
 
 constexpr double kLimit = 0.5;  // of a core
 constexpr double kRate_hz = 30;
-
-double thread_time_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Cost {
   double snapshot_s = 0, update_s = 0, draw_s = 0, jpeg_s = 0, bytes = 0, rays = 0;
@@ -60,16 +54,16 @@ std::vector<Cost> measure(const std::string& world_name, int pictures) {
     while (world.time_s() < i / kRate_hz) world.step();
     double t[5];
     for (std::size_t c = 0; c < robot.cameras.size(); ++c) {
-      t[0] = thread_time_s();
+      t[0] = bench::thread_time_s();
       taker.take(world, snapshot);
-      t[1] = thread_time_s();
+      t[1] = bench::thread_time_s();
       scene.update(snapshot);
-      t[2] = thread_time_s();
+      t[2] = bench::thread_time_s();
       const physics::CameraDescription& camera = robot.cameras[c];
       renderers[c].render(scene, camera_view(snapshot.robots.front(), camera, camera.field_of_view_rad), picture);
-      t[3] = thread_time_s();
+      t[3] = bench::thread_time_s();
       const auto file = jpeg.encode(picture, camera.jpeg_quality);
-      t[4] = thread_time_s();
+      t[4] = bench::thread_time_s();
       if (i < 0) continue;
       Cost& cost = costs[c];
       cost.snapshot_s += (t[1] - t[0]) / pictures;

@@ -3,7 +3,6 @@
 //
 // Usage: physics_speed [robot-seconds per scene, default 20]
 #include <fmt/format.h>
-#include <time.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/thread_time.hpp"
 #include "command_line/checks.hpp"
 #include "command_line/parse.hpp"
 #include "physics/world.hpp"
@@ -29,12 +29,6 @@ struct Case {
 };
 
 constexpr double kRound_s = 7;  // then the scene restarts; about the duration of a climb
-
-double thread_time_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 void measure(const Case& scene, double time_s) {
   // The scene's world and robots, all with the same command.
@@ -62,12 +56,12 @@ void measure(const Case& scene, double time_s) {
   for (long done = 0; done < steps; done += round) {
     world.reset();
     for (const RobotId id : world.robots()) world.set_command(id, command);
-    const double start_s = thread_time_s();
+    const double start_s = bench::thread_time_s();
     for (long i = 0; i < std::min(round, steps - done); ++i) {
       world.step();
       contacts += static_cast<double>(world.contact_count());
     }
-    taken_s += thread_time_s() - start_s;
+    taken_s += bench::thread_time_s() - start_s;
   }
   const auto n = static_cast<double>(steps);
   fmt::print("{:<28} {:>10.0f} {:>12.1f} {:>14.1f}\n", scene.name, n / taken_s, n * dt / taken_s, contacts / n);

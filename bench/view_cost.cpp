@@ -2,9 +2,9 @@
 // and formatting it on the view's thread.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <time.h>
 #include <CLI/CLI.hpp>
 
+#include "bench/thread_time.hpp"
 #include "command_line/parse.hpp"
 #include "server/live/messages.hpp"
 #include "server/world_server/manual_drive.hpp"
@@ -13,18 +13,12 @@ namespace {
 
 using namespace kenaf;
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 template <typename Work>
 double microseconds(int times, Work work) {
   work();
-  const double began = thread_seconds();
+  const double began = bench::thread_time_s();
   for (int i = 0; i < times; ++i) work();
-  return (thread_seconds() - began) / times * 1e6;
+  return (bench::thread_time_s() - began) / times * 1e6;
 }
 
 }  // namespace

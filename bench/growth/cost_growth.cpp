@@ -1,10 +1,10 @@
 // How costs grow: a table in Markdown with a row for each curve.
 //
-//   cost_growth [--bin DIR] [contacts | robots | larger-ground | finer-ground | rays | effects | runs | cores | ranks
-//   ...]
+//   cost_growth [--bin DIR] [contacts|robots|larger-ground|finer-ground|rays|effects|runs|cores|ranks ...]
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 
 #include "bench/growth/curves.hpp"

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -65,18 +66,14 @@ void make_runs(const fs::path& bin, int repeats, const fs::path& out) {
       out.parent_path() / "simulate.log");
 }
 
-Words diagnosis_of(const fs::path& program, const fs::path& runs, const fs::path& out) {
-  return {program, "diagnose", runs, "--no-next", "--out", out};
-}
-
-// The time of a diagnosis of four runs by `program`, with `more` arguments.
-Cost diagnosis_by(const fs::path& bin, Words before, const fs::path& program, const Words& more) {
+// The cost of a diagnosis of two manoeuvres, `repeats` times each, by `program`, with `more` options.
+Cost diagnosis_by(const fs::path& bin, Words program, int repeats, const Words& more) {
   const support::TemporaryFolder folder;
-  make_runs(bin, 2, folder.path() / "runs");
-  const Words diagnosis = diagnosis_of(program, folder.path() / "runs", folder.path() / "out");
-  before.insert(before.end(), diagnosis.begin(), diagnosis.end());
-  before.insert(before.end(), more.begin(), more.end());
-  return run(before, folder.path() / "diagnose.log");
+  make_runs(bin, repeats, folder.path() / "runs");
+  for (const std::string& word : Words{"diagnose", folder.path() / "runs", "--no-next", "--out", folder.path() / "out"})
+    program.push_back(word);
+  program.insert(program.end(), more.begin(), more.end());
+  return run(program, folder.path() / "diagnose.log");
 }
 
 int cores() {
@@ -96,37 +93,33 @@ Growth over_effects(const fs::path& bin) {
     Words more;
     if (!left_out.empty()) more = {"--without", fmt::format("{}", fmt::join(left_out, ","))};
     growth.points.push_back(
-        {static_cast<double>(all.size() - left_out.size()), diagnosis_by(bin, {}, bin / "kenaf-gap", more).cpu_s});
+        {static_cast<double>(all.size() - left_out.size()), diagnosis_by(bin, {bin / "kenaf-gap"}, 2, more).cpu_s});
   }
   return growth;
 }
 
 Growth over_runs(const fs::path& bin) {
   Growth growth{"runs, of two manoeuvres", "s of the processors", {}, 1};
-  for (const int repeats : {2, 4, 8}) {
-    const support::TemporaryFolder folder;
-    make_runs(bin, repeats, folder.path() / "runs");
-    const Cost cost = run(diagnosis_of(bin / "kenaf-gap", folder.path() / "runs", folder.path() / "out"),
-                          folder.path() / "diagnose.log");
-    growth.points.push_back({2.0 * repeats, cost.cpu_s});
-  }
+  for (const int repeats : {2, 4, 8})
+    growth.points.push_back({2.0 * repeats, diagnosis_by(bin, {bin / "kenaf-gap"}, repeats, {}).cpu_s});
   return growth;
 }
 
 Growth over_cores(const fs::path& bin) {
   Growth growth{"cores, four runs", "s", {}, -1};
   for (int jobs = 1; jobs <= cores(); jobs *= 2)
-    growth.points.push_back(
-        {static_cast<double>(jobs), diagnosis_by(bin, {}, bin / "kenaf-gap", {"--jobs", std::to_string(jobs)}).wall_s});
+    growth.points.push_back({static_cast<double>(jobs),
+                             diagnosis_by(bin, {bin / "kenaf-gap"}, 2, {"--jobs", std::to_string(jobs)}).wall_s});
   return growth;
 }
 
 Growth over_ranks(const fs::path& bin) {
   Growth growth{"MPI ranks of one core, four runs", "s", {}, -1};
   for (int ranks = 1; ranks <= cores(); ranks *= 2) {
-    const Words mpirun{"/usr/bin/mpirun", "--allow-run-as-root", "--oversubscribe", "-n", std::to_string(ranks)};
-    growth.points.push_back(
-        {static_cast<double>(ranks), diagnosis_by(bin, mpirun, bin / "kenaf-gap-mpi", {"--jobs", "1"}).wall_s});
+    const Words program{"/usr/bin/env",       "mpirun", "--allow-run-as-root",
+                        "--oversubscribe",    "-n",     std::to_string(ranks),
+                        bin / "kenaf-gap-mpi"};
+    growth.points.push_back({static_cast<double>(ranks), diagnosis_by(bin, program, 2, {"--jobs", "1"}).wall_s});
   }
   return growth;
 }

@@ -1,10 +1,10 @@
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "bench/growth/curves.hpp"
+#include "bench/thread_time.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::bench {
@@ -16,10 +16,11 @@ using namespace physics;
 constexpr int kRounds = 3;  // the fastest counts: other programs only slow one down
 constexpr double kSettle_s = 0.5, kMeasured_s = 3;
 
-double thread_time_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+// A robot is let down onto what is below.
+Pose above(double x_m = 0, double y_m = 0) {
+  Pose X_WB;
+  X_WB.p = {x_m, y_m, 0.3};
+  return X_WB;
 }
 
 robot::Command driving(double left_mps, double right_mps) {
@@ -91,9 +92,7 @@ WorldDescription rough_ground(int squares_a_side, double square_m) {
 
 Point on_rough_ground(int squares_a_side, double square_m) {
   World world(rough_ground(squares_a_side, square_m), {}, 1);
-  Pose X_WB;
-  X_WB.p.z() = 0.3;
-  world.add_robot(load_robot("kenaf"), "a", X_WB);
+  world.add_robot(load_robot("kenaf"), "a", above());
   return {2.0 * squares_a_side * squares_a_side, cost_of_steps(world, driving(0.2, 0.2)).step_us};
 }
 
@@ -113,9 +112,7 @@ Growth over_contacts() {
       description.boxes.push_back(bar);
     }
     World world(description, {}, 1);
-    Pose X_WB;
-    X_WB.p.z() = 0.3;
-    world.add_robot(load_robot("kenaf"), "a", X_WB);
+    world.add_robot(load_robot("kenaf"), "a", above());
     const StepCost cost = cost_of_steps(world, driving(0, 0));
     growth.points.push_back({cost.contacts, cost.step_us});
   }
@@ -124,13 +121,12 @@ Growth over_contacts() {
 
 Growth over_robots() {
   Growth growth{"robots that turn in place, apart", "µs a step", {}, 1};
+  const RobotDescription robot = load_robot("kenaf");
   for (const int robots : {1, 2, 4, 8, 16, 32}) {
     World world(level_ground(), {}, 1);
     for (int i = 0; i < robots; ++i) {
-      Pose X_WB;
       const int row = i / 8, column = i % 8;
-      X_WB.p = {2.0 * column, 2.0 * row, 0.3};
-      world.add_robot(load_robot("kenaf"), std::to_string(i), X_WB);
+      world.add_robot(robot, std::to_string(i), above(2.0 * column, 2.0 * row));
     }
     growth.points.push_back({static_cast<double>(robots), cost_of_steps(world, driving(-0.2, 0.2)).step_us});
   }
@@ -165,9 +161,7 @@ Growth over_rays() {
     scanner.resolution_rad = std::numbers::pi / (rays - 1);
     robot.sensors = {scanner};
     World world(rough_ground(100, 0.1), {}, 1);
-    Pose X_WB;
-    X_WB.p.z() = 0.3;
-    const RobotId id = world.add_robot(robot, "a", X_WB);
+    const RobotId id = world.add_robot(robot, "a", above());
 
     // only the readings are timed
     double least_us = INFINITY;

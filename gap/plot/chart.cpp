@@ -6,9 +6,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "gap/plot/axis.hpp"
 #include "gap/plot/simplify.hpp"
+#include "gap/plot/svg.hpp"
 
 namespace kenaf::gap::plot {
 
@@ -154,8 +156,7 @@ std::string discs(const Chart& chart, const View& view) {
         fmt::format("<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"", disc.filled ? "disc" : "ring",
                     ink_class(disc.ink), at.x(), at.y(), disc.radius_px);
     circle += disc.hint.empty() ? "/>" : fmt::format("><title>{}</title></circle>", escaped(disc.hint));
-    if (!disc.link.empty()) circle = fmt::format("<a href=\"{}\">{}</a>", escaped(disc.link), circle);
-    svg += circle + "\n";
+    svg += linked(std::move(circle), disc.link) + "\n";
     if (disc.label.empty()) continue;
     const double half_px = kLetter_px * static_cast<double>(disc.label.size()) / 2, above = at.y() - disc.radius_px - 5;
     fmt::format_to(out, "<text class=\"halo middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",

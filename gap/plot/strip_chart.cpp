@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "gap/plot/axis.hpp"
 #include "gap/plot/chart.hpp"
@@ -47,8 +48,7 @@ std::string span_of(const StripSpan& span, double x_px, double width_px, double 
   const bool name = has_room(span.name, width_px), note = has_room(span.note, width_px);
   if (name) svg += text_at(middle, y_px + (note ? 16 : 23), span.name, "middle dark small");
   if (note) svg += text_at(middle, y_px + (name ? 31 : 23), span.note, "middle dark small");
-  if (!span.link.empty()) svg = fmt::format("<a href=\"{}\">{}</a>", escaped(span.link), svg);
-  return svg + "\n";
+  return linked(std::move(svg), span.link) + "\n";
 }
 
 }  // namespace

@@ -41,6 +41,10 @@ std::string end_of(std::string_view text, double width_px) {
   return "\u2026" + std::string(text);
 }
 
+std::string linked(std::string svg, std::string_view link) {
+  return link.empty() ? svg : fmt::format("<a href=\"{}\">{}</a>", escaped(link), svg);
+}
+
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,
                        std::string_view hint) {
   return fmt::format(

@@ -20,6 +20,9 @@ double text_width_px(std::string_view text);
 // Returns the text if it fits into `width_px`, otherwise its end after an ellipsis: long names differ at their ends.
 std::string end_of(std::string_view text, double width_px);
 
+// Returns `svg` as a link; unchanged if `link` is empty.
+std::string linked(std::string svg, std::string_view link);
+
 // Returns a box shaded by `strength`, from 0 to 1, on which text stays readable. `hint` is shown under the pointer.
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,
                        std::string_view hint = {});
