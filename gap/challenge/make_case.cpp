@@ -27,10 +27,13 @@ constexpr double kNarrow = 1.5;  // ratio of a bracket's ends below which a powe
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: below, only the give of the teeth remains
 constexpr double kCloseToPlanned = 0.9;
+// A size that is nearly the same at a quarter of the value is not the effect's, but that of a run which any change
+// sends another way.
+constexpr double kQuarter = 0.25, kNearlyTheSame = 0.75;
 
 // Searches the share of the way at which `size_at` is `wanted`, or up to kCloseEnough times that, and returns it with
-// the size there; the whole way if the size is not reached. Works with ratios, since a thousandth of an effect's range
-// may be visible.
+// the size there; the whole way if the size is not reached, and 0 for a size that does not grow with the share. Works
+// with ratios, since a thousandth of an effect's range may be visible.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);
@@ -50,7 +53,8 @@ std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt
     else
       above = next, size = at_next;
   }
-  return {above, size};
+  const bool grows = kQuarter * above < smallest_share || size_at(kQuarter * above) < kNearlyTheSame * size;
+  return {above, grows ? size : 0};
 }
 
 struct Sized {

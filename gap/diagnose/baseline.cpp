@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <utility>
 
 #include "formats/runs/run_file.hpp"
+#include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -36,38 +38,59 @@ Observations joined(const Observations& now, Observations before) {
   return both;
 }
 
-// A stage's residual, averaged over the baseline's runs that repeat a run.
-struct MeanResidual {
-  double sum = 0, runs = 0;
+// Sums over the baseline's runs that repeat a run.
+struct OfBaseline {
+  double residual = 0, simulated = 0, runs = 0;
 };
-using MeanResiduals = std::map<std::pair<std::size_t, std::size_t>, MeanResidual>;  // by channel and span
+using BaselineBins = std::map<std::pair<std::size_t, std::size_t>, OfBaseline>;  // by channel and span
 
-MeanResiduals mean_residuals(const std::vector<std::size_t>& runs, const std::vector<StageFeatures>& features,
-                             const std::vector<VectorXd>& residuals) {
-  MeanResiduals means;
+BaselineBins bins_of_baseline(const std::vector<std::size_t>& runs, const std::vector<StageFeatures>& features,
+                              const std::vector<VectorXd>& residuals) {
+  BaselineBins bins;
   for (const std::size_t r : runs)
     for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
-      MeanResidual& mean = means[{features[r].bins[b].channel, features[r].bins[b].span}];
-      mean.sum += residuals[r][static_cast<Index>(b)];
-      ++mean.runs;
+      OfBaseline& sum = bins[{features[r].bins[b].channel, features[r].bins[b].span}];
+      const auto i = static_cast<Index>(b);
+      sum.residual += residuals[r][i];
+      sum.simulated += features[r].measured[i] - residuals[r][i];
+      ++sum.runs;
     }
-  return means;
+  return bins;
 }
 
-StageFeatures less(const StageFeatures& stage, const MeanResiduals& means) {
-  StageFeatures result{{}, stage.span_s, {}, {}, {}};
-  std::vector<double> measured, runs;
+VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
+}
+
+StageFeatures less(const StageFeatures& stage, const BaselineBins& baseline) {
+  StageFeatures result{{}, stage.span_s, {}, {}, {}, {}};
+  std::vector<double> measured, runs, simulated;
   for (std::size_t b = 0; b < stage.bins.size(); ++b) {
-    const auto found = means.find({stage.bins[b].channel, stage.bins[b].span});
-    if (found == means.end()) continue;
+    const auto found = baseline.find({stage.bins[b].channel, stage.bins[b].span});
+    if (found == baseline.end()) continue;
+    const OfBaseline& sum = found->second;
     result.bins.push_back(stage.bins[b]);
     result.rows.push_back(stage.rows[b]);
-    measured.push_back(stage.measured[static_cast<Index>(b)] - found->second.sum / found->second.runs);
-    runs.push_back(found->second.runs);
+    measured.push_back(stage.measured[static_cast<Index>(b)] - sum.residual / sum.runs);
+    simulated.push_back(sum.simulated / sum.runs);
+    runs.push_back(sum.runs);
   }
-  result.measured = Eigen::Map<const VectorXd>(measured.data(), std::ssize(measured));
-  result.baseline_runs = Eigen::Map<const VectorXd>(runs.data(), std::ssize(runs));
+  result.measured = vector_of(measured);
+  result.baseline_runs = vector_of(runs);
+  result.baseline_simulated = vector_of(simulated);
   return result;
+}
+
+// For each bin the largest value of its channel up to one bin earlier or later.
+VectorXd largest_beside(const std::vector<Bin>& bins, const VectorXd& values) {
+  VectorXd largest = values;
+  for (std::size_t b = 1; b < bins.size(); ++b) {
+    if (bins[b].channel != bins[b - 1].channel || bins[b].span != bins[b - 1].span + 1) continue;
+    const auto i = static_cast<Index>(b);
+    largest[i] = std::max(largest[i], values[i - 1]);
+    largest[i - 1] = std::max(largest[i - 1], values[i]);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -121,7 +144,23 @@ void compare_against(ComparedFeatures& now, const Baseline& baseline, const Comp
     const auto p = static_cast<std::size_t>(passage);
     for (std::size_t r = 0; r < now.of_stage[p].size(); ++r)
       now.of_stage[p][r] =
-          less(now.of_stage[p][r], mean_residuals(baseline.of_run[r], before.of(passage), residuals[p]));
+          less(now.of_stage[p][r], bins_of_baseline(baseline.of_run[r], before.of(passage), residuals[p]));
+  }
+}
+
+void add_roughness_of_starts(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
+                             const std::vector<VectorXd>& simulated) {
+  for (std::size_t r = 0; r < open.size(); ++r) {
+    if (features[r].baseline_simulated.size() == 0) continue;
+    // in counts of the channels, less the best fit of the start pose's shapes
+    VectorXd counts(std::ssize(features[r].bins));
+    for (Index b = 0; b < counts.size(); ++b)
+      counts[b] = diagnosis_channels()[features[r].bins[static_cast<std::size_t>(b)].channel].resolution;
+    const Eigen::MatrixXd start = counts.cwiseInverse().asDiagonal() * open[r].local.leftCols(kShapesOfStart);
+    const VectorXd difference = (simulated[r] - features[r].baseline_simulated).cwiseQuotient(counts);
+    const VectorXd rest = difference - start * start.completeOrthogonalDecomposition().solve(difference);
+    const VectorXd rough = largest_beside(features[r].bins, rest.cwiseAbs()).cwiseProduct(counts);
+    open[r].roughness = (open[r].roughness.array().square() + 2 * rough.array().square()).sqrt().matrix();
   }
 }
 

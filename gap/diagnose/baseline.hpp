@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "gap/diagnose/noise_floor.hpp"
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/prediction.hpp"
 
@@ -30,5 +31,12 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
 // measured minus nominal for each stage and each baseline run; `before`: the baseline's features.
 void compare_against(ComparedFeatures& now, const Baseline& baseline, const ComparedFeatures& before,
                      const std::array<std::vector<Eigen::VectorXd>, kPassages.size()>& residuals);
+
+// Adds to the roughness of each run the difference d between its simulation and its baseline's, except for what is
+// linear in the start pose: from another start pose a climb or a fall begins at another time, and the real one at yet
+// another, by as much again: sqrt(2) d, of the bin itself or the one beside it. `simulated`: of each run, of the
+// nominal robot.
+void add_roughness_of_starts(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
+                             const std::vector<Eigen::VectorXd>& simulated);
 
 }  // namespace kenaf::gap::diagnose

@@ -25,6 +25,11 @@ struct DecisionSettings {
   // Largest difference between values fitted to later and earlier parts of manoeuvres, as a fraction of the effect
   // (chosen; it is 1 if the effect grows from zero with time).
   double steady = 0.75;
+  // Most that may be left of an effect's shift in a kind of channels that it should explain, rms: the sine of the angle
+  // from which causes are distinguishable (isolability.hpp), as a cause at a smaller angle would leave less.
+  double left_of_kind = 0.174;
+  // Largest difference between the value of one kind of channels and that of all, as a fraction of the effect (chosen).
+  double alike = 0.3;
   // Relative increase of the squared residual in another stage that refutes an effect (chosen).
   double more_left = 0.1;
   std::size_t most_effects = 6;

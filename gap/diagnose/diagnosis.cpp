@@ -194,12 +194,12 @@ Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
 namespace {
 // Sensors hardly show errors of the description's numbers: the estimate of earlier stages is used if it is larger.
 void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
-                     Predictor& predictor, std::uint64_t seed) {
+                     Predictor& predictor, const StageOptions& options) {
   double numbers_off = 0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const double own = stages[s].decision.best.model.likelihood.discrepancies.numbers_off;
     numbers_off = stages[s].passage == Passage::body_to_sensor ? std::max(own, numbers_off) : own;
-    widen_intervals(stages[s], prepared[s], predictor, numbers_off, seed);
+    widen_intervals(stages[s], prepared[s], predictor, numbers_off, options);
   }
 }
 }  // namespace
@@ -254,7 +254,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
 
     // then all stages together: contradictions between them, interval widths, the verdict, and what to drive next
     settle_by_other_stages(d.stages, prepared, predictor, stage_options);
-    widen_intervals(d.stages, prepared, predictor, options.seed);
+    widen_intervals(d.stages, prepared, predictor, stage_options);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
     if (options.propose_next && options.ranks.rank == 0) propose_next(d);

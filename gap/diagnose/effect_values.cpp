@@ -122,7 +122,7 @@ std::vector<MatrixXd> slopes(const StageData& data, const StandingModel& standin
   return result;
 }
 
-std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing) {
+std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing, double borne_out) {
   const Model& model = standing.model;
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, model.likelihood.discrepancies);
 
@@ -139,8 +139,9 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
     for (std::size_t e = 0; e < model.places.size(); ++e)
       own[e].push_back(own_value(standing.curves, model.places[e], standing.curves.shifts[g], whiteners[g], rest[g]));
 
-  // per effect the interval by the larger of both standard errors, and its trend
+  // per effect the interval by the larger of both standard errors, its trend, and its fit in kinds of channels
   const GroupVectors left = without_open_shapes(data, residual, model.likelihood.discrepancies);
+  const std::vector<FitByKind> by_kind = fit_by_kind(data, standing, left, borne_out);
   std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
     const candidates::Candidate& candidate = standing.curves.candidates[model.places[e].curve];
@@ -150,7 +151,8 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
     const double sigma = std::sqrt(std::max(variance, random.spread > 0 ? random.variance_of_mean : 0.0));
     const double value = model.places[e].value;
     values.push_back({interval_of(standing.curves.curves[model.places[e].curve], candidate, value, sigma),
-                      random.spread, random.p_agree, trend(data, columns, i, value - candidate.present, left)});
+                      random.spread, random.p_agree, trend(data, columns, i, value - candidate.present, left),
+                      by_kind[e]});
   }
   return values;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "gap/diagnose/fit_by_kind.hpp"
 #include "gap/diagnose/side_by_side.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -23,9 +24,11 @@ struct EffectValue {
   double spread = 0;
   double p_agree = 1;  // p value of their differences if they agree (Cochran's Q)
   double trend = 0;    // difference between values fitted to later and earlier parts of manoeuvres (trend.hpp)
+  FitByKind by_kind{};
 };
 // One per effect of the model. Intervals and the manoeuvres' own estimates stay within the parameter's range.
-std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing);
+// `borne_out`: the deviance by which a kind of channels has to prefer a value of its own.
+std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing, double borne_out);
 
 // Derivatives of the model's shift by each value, for each group, from its curves.
 std::vector<Eigen::MatrixXd> slopes(const StageData& data, const StandingModel& standing);

@@ -20,7 +20,8 @@ struct NamedElsewhere {
   Interval value;
 };
 
-// A candidate that would increase the residual of another stage at the value that this stage gives it.
+// A candidate that does not fit another stage: there it would increase the residual at the value that this stage gives
+// it, or kinds of channels doubt it (fit_by_kind.hpp).
 struct RefutedElsewhere {
   std::size_t candidate;
   Passage by;

@@ -15,8 +15,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Chosen: this many give a standard error to a quarter of itself.
-constexpr int kRobots = 8;
-constexpr double kOfRobots = 2.306;  // like kHalfWidth, for Student's t with kRobots degrees of freedom
+constexpr std::size_t kRobots = 8;
+// Quantiles of Student's t with kRobots degrees of freedom in place of a normal distribution's 1.96 (kHalfWidth) and 4.
+constexpr double kHalfWidthOfRobots = 2.306, kFourSigmaOfRobots = 7.60;
 
 // Errors of the numbers alone; uniform, like a tolerance.
 Settings drawn(std::span<const candidates::Candidate> candidates, const NumbersOff& numbers, Random& random) {
@@ -35,27 +36,31 @@ Settings with(Settings settings, const Settings& more) {
   return settings;
 }
 
-// For each group, in columns: the difference of each drawn robot from the model's.
+// For each group, in columns: what wrong numbers do to the robot with the model's effects (first half of the columns),
+// and to the one without them. Against a baseline the former is the change of that difference, the latter nothing.
 std::vector<MatrixXd> differences_of_robots(const StageData& data, const StandingModel& standing,
                                             const NumbersOff& numbers, const Simulate& simulate, std::uint64_t seed) {
   const Settings model = settings_of(standing.model.places);
   Random random(seed);
-  std::vector<Settings> asked{model}, before{{}};
-  for (int i = 0; i < kRobots; ++i) {
+  std::vector<Settings> with_effects{model}, without{{}};
+  for (std::size_t i = 0; i < kRobots; ++i) {
     Settings off = drawn(standing.curves.candidates, numbers, random);
-    asked.push_back(with(model, off));
-    before.push_back(std::move(off));
+    with_effects.push_back(with(model, off));
+    without.push_back(std::move(off));
   }
-  const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::fine);
-  std::vector<GroupVectors> shifts_before;
-  if (numbers.also_before) shifts_before = simulate(before, Fidelity::fine);
+  const std::vector<GroupVectors> shifts = simulate(with_effects, Fidelity::fine),
+                                  shifts_without = simulate(without, Fidelity::fine);
   std::vector<MatrixXd> differences;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    differences.emplace_back(std::ssize(data.groups[g].bins), kRobots);
+    differences.emplace_back(std::ssize(data.groups[g].bins), 2 * kRobots);
     for (std::size_t i = 0; i < kRobots; ++i) {
-      VectorXd difference = shifts[i + 1][g] - shifts[0][g];
-      if (numbers.also_before) difference -= shifts_before[i + 1][g] - shifts_before[0][g];
-      differences.back().col(static_cast<Index>(i)) = difference;
+      VectorXd changed = shifts[i + 1][g] - shifts[0][g], unchanged = shifts_without[i + 1][g] - shifts_without[0][g];
+      if (numbers.also_before) {
+        changed -= unchanged;
+        unchanged.setZero();
+      }
+      differences.back().col(static_cast<Index>(i)) = changed;
+      differences.back().col(static_cast<Index>(kRobots + i)) = unchanged;
     }
   }
   return differences;
@@ -73,8 +78,16 @@ std::vector<MatrixXd> concatenated(std::vector<MatrixXd> left, const std::vector
 
 }  // namespace
 
-VectorXd errors_of_values(const StageData& data, const StandingModel& standing, const NumbersOff& numbers,
-                          const Simulate& simulate, std::uint64_t seed) {
+double ErrorOfValue::half_width() const {
+  return std::hypot(kHalfWidth * of_noise, kHalfWidthOfRobots * of_numbers);
+}
+
+double ErrorOfValue::four_sigma() const {
+  return std::hypot(4 * of_noise, kFourSigmaOfRobots * std::max(of_numbers, of_numbers_without));
+}
+
+std::vector<ErrorOfValue> errors_of_values(const StageData& data, const StandingModel& standing,
+                                           const NumbersOff& numbers, const Simulate& simulate, std::uint64_t seed) {
   const Discrepancies& discrepancies = standing.model.likelihood.discrepancies;
   std::vector<MatrixXd> number_shapes;
   for (const StageGroup& group : data.groups) number_shapes.push_back(discrepancies.numbers_off * group.number_shapes);
@@ -87,19 +100,21 @@ VectorXd errors_of_values(const StageData& data, const StandingModel& standing, 
       concatenated(concatenated(slope, number_shapes), differences_of_robots(data, standing, numbers, simulate, seed)));
   const MatrixXd covariance = products.topLeftCorner(values, values).completeOrthogonalDecomposition().pseudoInverse();
   const MatrixXd of_shapes = covariance * products.block(0, values, values, shapes);
-  const MatrixXd of_robots = covariance * products.topRightCorner(values, kRobots);
+  const MatrixXd of_robots = covariance * products.topRightCorner(values, 2 * kRobots);
 
   // the covariance includes the numbers' linear shifts, which the robots replace here
-  constexpr double kFew = kOfRobots / kHalfWidth;
   const VectorXd of_noise = covariance.diagonal() - of_shapes.rowwise().squaredNorm();
-  const VectorXd of_numbers = kFew * kFew * of_robots.rowwise().squaredNorm() / kRobots;
-  return (of_noise.cwiseMax(0) + of_numbers).cwiseSqrt();
+  const auto rms = [&](const auto& of_some) { return std::sqrt(of_some.squaredNorm() / kRobots); };
+  std::vector<ErrorOfValue> errors;
+  for (Index v = 0; v < values; ++v)
+    errors.push_back({std::sqrt(std::max(0.0, of_noise[v])), rms(of_robots.row(v).head(kRobots)),
+                      rms(of_robots.row(v).tail(kRobots))});
+  return errors;
 }
 
-Interval widened(Interval interval, double standard_error, const candidates::Candidate& candidate) {
-  const double half = kHalfWidth * standard_error;
-  interval.from = std::min(interval.from, std::max(candidate.min, interval.value - half));
-  interval.to = std::max(interval.to, std::min(candidate.max, interval.value + half));
+Interval widened(Interval interval, double half_width, const candidates::Candidate& candidate) {
+  interval.from = std::min(interval.from, std::max(candidate.min, interval.value - half_width));
+  interval.to = std::max(interval.to, std::min(candidate.max, interval.value + half_width));
   return interval;
 }
 

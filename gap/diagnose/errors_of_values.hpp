@@ -26,11 +26,26 @@ struct NumbersOff {
   bool also_before = false;             // also in the baseline that the data are compared with
 };
 
-// Standard error of each of the model's values due to noise, discrepancies and wrong numbers.
-Eigen::VectorXd errors_of_values(const StageData& data, const StandingModel& standing, const NumbersOff& numbers,
-                                 const Simulate& simulate, std::uint64_t seed);
+// Standard errors of one value. Those of numbers come from so few robots that Student's t takes the place of the normal
+// distribution.
+struct ErrorOfValue {
+  double of_noise = 0;    // and discrepancies
+  double of_numbers = 0;  // with wrong values, on the robot with the model's effects
+  // Likewise, on the robot without them; 0 against a baseline. Where that one slides or climbs and the other one does
+  // not, wrong numbers may do much more to it, and look like an effect.
+  double of_numbers_without = 0;
 
-// Widens the interval to +-kHalfWidth standard errors if that is wider, within the candidate's range.
-Interval widened(Interval interval, double standard_error, const candidates::Candidate& candidate);
+  double half_width() const;  // of the 95 % interval
+  // The distance from no effect that noise and numbers exceed as rarely as a normal distribution exceeds 4 sigma: once
+  // in 16,000 times, as one effect of some 70 does by chance once in 200 diagnoses.
+  double four_sigma() const;
+};
+
+// One for each of the model's values.
+std::vector<ErrorOfValue> errors_of_values(const StageData& data, const StandingModel& standing,
+                                           const NumbersOff& numbers, const Simulate& simulate, std::uint64_t seed);
+
+// Widens the interval to +-`half_width` if that is wider, within the candidate's range.
+Interval widened(Interval interval, double half_width, const candidates::Candidate& candidate);
 
 }  // namespace kenaf::gap::diagnose

@@ -17,6 +17,12 @@ bool is_lack_of_share(Doubt doubt) {
   return doubt == Doubt::not_held_out || doubt == Doubt::negligible;
 }
 
+// Doubts that say nothing of effects that stand in for each other: one takes up what another misses.
+bool is_misfit_of_one(Doubt doubt) {
+  return doubt == Doubt::disagreement || doubt == Doubt::trend || doubt == Doubt::kinds_differ ||
+         doubt == Doubt::leaves_much;
+}
+
 // Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
 bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettings& settings) {
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
@@ -30,12 +36,11 @@ double change_by(const ModelEffect& effect, const candidates::Candidate& candida
 // of them the gap remains. They are named as a set, the smallest that explains enough.
 void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
-  // their individual shares are unknown, so manoeuvres, and parts of them, may disagree on these
+  // their individual shares are unknown, so manoeuvres, parts of them, and kinds of channels may disagree on these
   const auto lacks_share = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
-    return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
-             return is_lack_of_share(doubt) || doubt == Doubt::disagreement || doubt == Doubt::trend;
-           });
+    return std::ranges::any_of(doubts, is_lack_of_share) &&
+           std::ranges::all_of(doubts, [](Doubt doubt) { return is_lack_of_share(doubt) || is_misfit_of_one(doubt); });
   };
   const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
 
@@ -76,6 +81,20 @@ void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<HeldOutSh
   }
 }
 
+// Of a stage with a gap and these effects.
+Verdict verdict_of(const std::vector<ModelEffect>& effects) {
+  bool any_named = false, any_rival = false;
+  for (const ModelEffect& effect : effects) {
+    any_named |= effect.doubts.empty();
+    any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
+  }
+  return any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+}
+
+bool has_names(const StageDecision& decision) {
+  return decision.verdict == Verdict::named || decision.verdict == Verdict::ambiguous;
+}
+
 }  // namespace
 
 std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
@@ -107,6 +126,8 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
     if (change < settings.ordinary * effect.ordinarily_off) effect.doubts.push_back(Doubt::ordinary);
     if (change < settings.agreement * effect.value.spread) effect.doubts.push_back(Doubt::disagreement);
     if (effect.value.trend > settings.steady * change) effect.doubts.push_back(Doubt::trend);
+    if (effect.value.by_kind.apart > settings.alike * change) effect.doubts.push_back(Doubt::kinds_differ);
+    if (effect.value.by_kind.left > settings.left_of_kind) effect.doubts.push_back(Doubt::leaves_much);
     if (effect.refuted_by) effect.doubts.push_back(Doubt::refuted);
     if (!(least(&Share::of_kind) >= settings.effect_share))
       effect.doubts.push_back(Doubt::not_held_out);
@@ -118,12 +139,23 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
 
   // then sets, and the verdict from what has a name
   name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
-  bool any_named = false, any_rival = false;
-  for (const ModelEffect& effect : d.effects) {
-    any_named |= effect.doubts.empty();
-    any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
+  d.verdict = verdict_of(d.effects);
+}
+
+void doubt_unless_simulated(StageDecision& d, double simulated, const DecisionSettings& settings) {
+  if (!has_names(d) || simulated >= settings.stage_share) return;
+  for (ModelEffect& effect : d.effects) effect.doubts.push_back(Doubt::not_simulated);
+  d.verdict = verdict_of(d.effects);
+}
+
+void doubt_uncertain_values(StageDecision& d, std::span<const candidates::Candidate> candidates) {
+  if (!has_names(d)) return;
+  for (ModelEffect& effect : d.effects) {
+    // members of a set have no values of their own
+    if (effect.partners.empty() && change_by(effect, candidates[effect.candidate]) < effect.sure_from)
+      effect.doubts.push_back(Doubt::uncertain);
   }
-  d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+  d.verdict = verdict_of(d.effects);
 }
 
 }  // namespace kenaf::gap::diagnose

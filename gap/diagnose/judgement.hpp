@@ -22,4 +22,11 @@ std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldO
 void judge(StageDecision& decision, std::span<const candidates::Candidate> candidates, const HeldOutShares& shares,
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings);
 
+// Takes all names away if the whole model explains too little of the stage's squared gap where it is simulated on
+// held-out runs: `simulated`, a share. The shares of judge() come from curves.
+void doubt_unless_simulated(StageDecision& decision, double simulated, const DecisionSettings& settings);
+
+// Takes names away from effects that differ too little from their present values (ModelEffect::sure_from).
+void doubt_uncertain_values(StageDecision& decision, std::span<const candidates::Candidate> candidates);
+
 }  // namespace kenaf::gap::diagnose

@@ -250,13 +250,13 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins.size());
     const auto channels = std::ssize(measured);
-    OpenShapes run{Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOfStart) + 2 * channels),
+    OpenShapes run{Eigen::MatrixXd::Zero(size, kShapesOfStart + 2 * channels),
                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart)), VectorXd::Zero(size)};
     // one count of a sensor persists while the robot rolls on, and its clock's error for the whole log
     const VectorXd late = shifts[2 * kOpen][r] - shifts.back()[r];
     for (Index b = 0; b < size; ++b) {
       const std::size_t channel = features[r].bins[static_cast<std::size_t>(b)].channel;
-      const Index place = 2 * static_cast<Index>(kOfStart) + (std::ranges::find(measured, channel) - measured.begin());
+      const Index place = kShapesOfStart + (std::ranges::find(measured, channel) - measured.begin());
       run.local(b, place) = diagnosis_channels()[channel].resolution;
       run.local(b, place + channels) = late[b];
     }

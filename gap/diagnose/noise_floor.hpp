@@ -39,10 +39,13 @@ class Whitener {
 // negative if all is smooth (odd part). The even part (a fall that begins earlier either way, a landing that may
 // continue in two ways) is a shape too; as it may occur elsewhere next time, it also counts as noise of those bins.
 struct OpenShapes {
-  Eigen::MatrixXd local;     // in columns, each with a separate unknown amount in each run: start pose, sensors' counts
-  Eigen::MatrixXd numerics;  // in columns, the same unknown amount in all runs: the simulator's numbers
+  // In columns, each with a separate unknown amount in each run: start pose (kShapesOfStart), sensors' counts.
+  Eigen::MatrixXd local;
+  Eigen::MatrixXd numerics;   // in columns, the same unknown amount in all runs: the simulator's numbers
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
 };
+
+inline constexpr Eigen::Index kShapesOfStart = 6;  // odd and even parts of x, y and yaw, the first of OpenShapes::local
 
 struct NoiseFloor {
   std::vector<double> sigma;  // all independent noise of a full bin of each channel; 0: never measured. For the median

@@ -68,7 +68,17 @@ std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& s
   return named;
 }
 
-// The effects of stage `s` and their rivals that another stage refutes.
+// Whether a stage has the candidate in its best model and finds that it does not fit there.
+bool is_misfit(const StageDecision& decision, std::size_t candidate) {
+  return std::ranges::any_of(decision.effects, [&](const ModelEffect& effect) {
+    return effect.candidate == candidate && std::ranges::any_of(effect.doubts, [](Doubt doubt) {
+             return doubt == Doubt::leaves_much || doubt == Doubt::kinds_differ;
+           });
+  });
+}
+
+// The effects of stage `s` and their rivals that another stage refutes: one that it needs, but that does not fit there,
+// or one that would increase its residual.
 std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s,
                                                 const std::vector<PreparedStage>& prepared, Predictor& predictor,
                                                 const DecisionSettings& settings) {
@@ -80,8 +90,12 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
       for (std::size_t other = 0; other < stages.size(); ++other) {
         const Setting& setting = model[e];
         const bool acts = std::ranges::count(prepared[other].possible, setting.candidate) > 0;
-        const bool is_there = has_effect(stages[other].decision.best.model, setting.candidate);
-        if (other == s || !acts || is_there) continue;
+        if (other == s || !acts) continue;
+        if (has_effect(stages[other].decision.best.model, setting.candidate)) {
+          if (is_misfit(stages[other].decision, setting.candidate))
+            refuted.push_back({setting.candidate, stages[other].passage});
+          continue;
+        }
         const std::vector<Setting> values = values_of(decision.effects[e], setting, prepared[other].candidates);
         if (refutes(stages[other].decision, simulator_of(prepared[other], predictor), values, settings))
           refuted.push_back({setting.candidate, stages[other].passage});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gap/diagnose/baseline.hpp"
 #include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/same_parts.hpp"
@@ -73,8 +74,9 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
 
   // noise, and the simulation's open shapes around the nominal model
   NoiseFloor& floor = stage.nominal.floor;
-  floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open_around(stage, predictor, {}),
-                      input.stated_noise);
+  std::vector<OpenShapes> open = open_around(stage, predictor, {});
+  if (has_baseline(features)) add_roughness_of_starts(open, features, predictor.nominal(input.passage));
+  floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open, input.stated_noise);
   stage.nominal.data = data_in(stage, floor);
 
   // a first look at all candidates; errors of the description's numbers are the same in a baseline

@@ -286,8 +286,28 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& 
         words.push_back(fmt::format("the values fitted to earlier and later parts of manoeuvres differ by {}{}",
                                     figure(effect.value.trend), unit_suffix(candidate.unit)));
         break;
+      case Doubt::kinds_differ: {
+        const FitByKind& fit = effect.value.by_kind;
+        words.push_back(fmt::format("the value fitted to {} alone differs by {}{}", kind_name(fit.apart_in),
+                                    figure(fit.apart), unit_suffix(candidate.unit)));
+        break;
+      }
+      case Doubt::uncertain:
+        words.push_back(fmt::format("errors of the description's numbers could be mistaken for up to {}{} of it",
+                                    figure(effect.sure_from), unit_suffix(candidate.unit)));
+        break;
+      case Doubt::leaves_much: {
+        const FitByKind& fit = effect.value.by_kind;
+        words.push_back(fmt::format("{} of its size remains in {}: something that resembles it may be the cause",
+                                    percent(fit.left), kind_name(fit.left_in)));
+        break;
+      }
+      case Doubt::not_simulated:
+        words.push_back(
+            fmt::format("simulated on {}, the model explains too little of the stage's gap", measured_on(d)));
+        break;
       case Doubt::refuted:
-        words.push_back(fmt::format("it would increase the residual from {}", passage_name(*effect.refuted_by)));
+        words.push_back(fmt::format("it does not fit the gap from {}", passage_name(*effect.refuted_by)));
         break;
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;

@@ -115,7 +115,7 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
                       const DecisionSettings& settings) {
   d.effects.clear();
   d.models_of_rivals.clear();
-  const std::vector<EffectValue> values = effect_values(d.data, d.best);
+  const std::vector<EffectValue> values = effect_values(d.data, d.best, settings.rival_evidence);
   for (std::size_t i = 0; i < d.best.model.places.size(); ++i) {
     const Model without = fit_without(d.data, d.best, {{i}});
     const double evidence = without.deviance() - d.best.model.deviance();

@@ -35,10 +35,14 @@ enum class Doubt {
   ordinary,          // the error of a number of the description is no larger than that of the others
   disagreement,      // values of manoeuvres differ by more than a share of the effect
   trend,             // so do values of earlier and later parts of runs
-  refuted,           // it would increase the residual of another stage
+  kinds_differ,      // so do values of kinds of channels
+  uncertain,         // errors of the description's numbers change its value by too large a part of it
+  refuted,           // it does not fit another stage (elsewhere.hpp)
   not_held_out,      // it explains too little on held-out runs or manoeuvres
   negligible,        // it explains hardly anything of the stage's whole gap
   little_explained,  // in the channels where it acts, the whole model explains too little on held-out runs
+  leaves_much,       // in channels that it should explain, the model leaves too much of its shift
+  not_simulated,     // simulated on held-out runs, the whole model explains too little of the stage
 };
 
 // The data of a stage around a model: the same noise, and the open shapes (noise_floor.hpp) of the simulation with the
@@ -76,7 +80,10 @@ struct ModelEffect {
   HeldOutShares::OfEffect share_of_set{};
   // Error of the description's numbers, 1 sigma, in the unit of this one; 0 for other candidates.
   double ordinarily_off = 0;
-  std::optional<Passage> refuted_by{};  // the stage whose residual it would increase
+  std::optional<Passage> refuted_by{};  // the stage that it does not fit
+  // Difference from its present value at which errors of the description's numbers could not be its cause; 0 if there
+  // are none.
+  double sure_from = 0;
 };
 
 // Index of an effect itself among its rivals, and of the best model among the models with these.
@@ -110,7 +117,7 @@ struct OtherModel {
   Settings model;   // refitted together
   Settings around;  // the simulation's open shapes are those of the robot with these effects
 };
-// `decided` with only these of its best model's effects: unnamed effects must not influence the others.
+// `decided` with only these of its best model's effects: those that explain nothing must not influence the others.
 OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places);
 // `decided` with the model of a rival of one effect.
 OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::size_t rival);

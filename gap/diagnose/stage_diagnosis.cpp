@@ -175,10 +175,29 @@ void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision
   if (rivals.size() > 1) decision.verdict = Verdict::ambiguous;
 }
 
+// A significant but invisibly small difference without a name is no gap.
+void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings) {
+  const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
+  if (stage.decision.verdict == Verdict::unknown && seen < settings.negligible * settings.negligible)
+    stage.decision.verdict = Verdict::none;
+}
+
 std::vector<std::size_t> places_with_name(const StageDecision& decision) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < decision.effects.size(); ++i)
     if (decision.effects[i].doubts.empty()) places.push_back(i);
+  return places;
+}
+
+// Effects with a name, and those that only resemble what they explain: without them that would bend the others' values.
+std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
+  const auto is_kept = [](const ModelEffect& effect) {
+    return std::ranges::all_of(effect.doubts,
+                               [](Doubt doubt) { return doubt == Doubt::leaves_much || doubt == Doubt::kinds_differ; });
+  };
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < decision.effects.size(); ++i)
+    if (is_kept(decision.effects[i])) places.push_back(i);
   return places;
 }
 
@@ -238,19 +257,18 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   };
   if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
 
-  // only the named effects, unless they need the others to be significant
-  const std::vector<std::size_t> named = places_with_name(stage.decision);
-  if (!named.empty() && named.size() < stage.decision.effects.size()) {
-    StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, named));
-    if (places_with_name(alone.decision).size() == named.size()) stage = std::move(alone);
+  // only the named effects and those that stand for something, unless the named ones need the others to be significant
+  const std::size_t names = places_with_name(stage.decision).size();
+  const std::vector<std::size_t> kept = places_to_keep(stage.decision);
+  if (names > 0 && kept.size() < stage.decision.effects.size()) {
+    StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, kept));
+    if (places_with_name(alone.decision).size() >= names) stage = std::move(alone);
   }
+  doubt_unless_simulated(stage.decision, stage.gap.explains.value, options.decision);
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 
-  // a significant but invisibly small difference without a name is no gap
-  const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
-  if (decision.verdict == Verdict::unknown && seen < options.decision.negligible * options.decision.negligible)
-    stage.decision.verdict = Verdict::none;
+  drop_invisible_gap(stage, options.decision);
 
   // the residual, in words
   if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)
@@ -274,7 +292,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
 }
 
 void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
-                     std::uint64_t seed) {
+                     const StageOptions& options) {
   StageDecision& decision = stage.decision;
   if (decision.effects.empty() || numbers_off == 0) return;
   // effects on the body turn a gyro, too, although they cannot cause its difference from the posture
@@ -283,13 +301,15 @@ void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predi
   const EffectSet valued = effects_of(decision.best.model);
   const NumbersOff numbers{numbers_but(prepared.candidates, of_all_stages, valued), numbers_off,
                            has_baseline(*prepared.input.features)};
-  const VectorXd errors =
-      errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), seed);
+  const std::vector<ErrorOfValue> errors =
+      errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), options.seed);
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {
     ModelEffect& effect = decision.effects[e];
-    effect.value.value =
-        widened(effect.value.value, errors[static_cast<Eigen::Index>(e)], prepared.candidates[effect.candidate]);
+    effect.value.value = widened(effect.value.value, errors[e].half_width(), prepared.candidates[effect.candidate]);
+    effect.sure_from = errors[e].four_sigma();
   }
+  doubt_uncertain_values(decision, prepared.candidates);
+  drop_invisible_gap(stage, options.decision);
 }
 
 }  // namespace kenaf::gap::diagnose

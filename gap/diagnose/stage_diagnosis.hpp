@@ -50,8 +50,9 @@ struct StageDiagnosis {
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
 
-// Widens intervals for errors of the description's numbers of `numbers_off`, 1 sigma (errors_of_values.hpp).
+// Widens intervals for errors of the description's numbers of `numbers_off`, 1 sigma (errors_of_values.hpp), and takes
+// the names of effects away that such errors could be instead.
 void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
-                     std::uint64_t seed);
+                     const StageOptions& options);
 
 }  // namespace kenaf::gap::diagnose

@@ -26,11 +26,12 @@ std::string_view passage_name(Passage passage);  // "command to drive"
 // The features of one run in a stage. All vectors are in the order of `bins`: channel by channel, each in the order of
 // time.
 struct StageFeatures {
-  std::vector<Bin> bins;             // none: this run does not measure the stage
-  double span_s = 0;                 // of a bin
-  Eigen::VectorXd measured;          // mean of each bin, in the unit of its channel
-  std::vector<Eigen::Index> rows{};  // indices of the bins in the run's FeatureMap
-  Eigen::VectorXd baseline_runs{};   // baseline runs of each bin (baseline.hpp); empty: no baseline
+  std::vector<Bin> bins;                 // none: this run does not measure the stage
+  double span_s = 0;                     // of a bin
+  Eigen::VectorXd measured;              // mean of each bin, in the unit of its channel
+  std::vector<Eigen::Index> rows{};      // indices of the bins in the run's FeatureMap
+  Eigen::VectorXd baseline_runs{};       // baseline runs of each bin (baseline.hpp); empty: no baseline
+  Eigen::VectorXd baseline_simulated{};  // mean of these runs, as the nominal robot drives them
 };
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured);
 

@@ -79,6 +79,33 @@ TEST_CASE("Less what the runs of before differ from the simulation by, bin by bi
   CHECK(run.rows == std::vector<Eigen::Index>{0, 1, 2});
 }
 
+TEST_CASE("What other start poses do beyond what is linear in them counts as noise") {
+  // x in counts of the channel: 3 further on at the start, so 3 all along; in the third bin the robot falls 40 earlier
+  const double count = diagnosis_channels()[x_m()].resolution;
+  StageFeatures run = run_of(count * numbers({0, 0, 0, 0}));
+  run.baseline_runs = numbers({1, 1, 1, 1});
+  run.baseline_simulated = count * numbers({0, 10, 20, 30});
+  OpenShapes shapes{MatrixXd::Zero(4, kShapesOfStart), MatrixXd::Zero(4, 0), numbers({0, 0, 0, 0})};
+  shapes.local.col(0) = count * numbers({1, 1, 1, 1});
+  std::vector<OpenShapes> open{shapes};
+  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 23, 33})});
+  CHECK(open[0].roughness.norm() < 1e-9 * count);
+
+  // the best offset is 13: it leaves 10 of each of the others and 30 there, which the bins beside it may have as well;
+  // the real robot by as much again, in squares
+  const VectorXd rough = std::sqrt(2.0) * numbers({10, 30, 30, 30});
+  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 63, 33})});
+  CHECK((open[0].roughness / count - rough).norm() < 1e-9);
+  // with what was rough before, in squares
+  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 63, 33})});
+  CHECK((open[0].roughness / count - std::sqrt(2.0) * rough).norm() < 1e-9);
+
+  // without a baseline nothing
+  std::vector<OpenShapes> alone{shapes};
+  add_roughness_of_starts(alone, {run_of(count * numbers({0, 0, 0, 0}))}, {count * numbers({3, 13, 63, 33})});
+  CHECK(alone[0].roughness.norm() == 0);
+}
+
 TEST_CASE("The noise of a change is that of both means, and the simulator's numbers cancel") {
   std::vector<StageFeatures> runs{run_of(numbers({0, 0})), run_of(numbers({0, 0}))};
   for (StageFeatures& run : runs) run.baseline_runs = numbers({4, 1});

@@ -47,7 +47,7 @@ int covered(const LinearWorld& world, double sigma, double memory_s, int draws) 
   for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(draws); ++seed) {
     const StageData data =
         world.data(0.4 * effects[0] + world.noise(5000 + seed) + world.wander(sigma, memory_s, 9000 + seed));
-    count += holds(effect_values(data, world.fitted(effects, data, {0}))[0].value, 0.4);
+    count += holds(effect_values(data, world.fitted(effects, data, {0}), 9)[0].value, 0.4);
   }
   return count;
 }
@@ -72,11 +72,11 @@ TEST_CASE("An interval is as wide as the noise lets it be, and stays in range") 
   // sigma 1 / 1000, and none of a discrepancy
   const std::vector<Whole> effects{1000 * world().direction(0), 1e-3 * world().direction(1)};
   const StageData data = world().data(0.5 * effects[0]);
-  const Interval sharp = effect_values(data, world().fitted(effects, data, {0}))[0].value;
+  const Interval sharp = effect_values(data, world().fitted(effects, data, {0}), 9)[0].value;
   CHECK(sharp.value == Approx(0.5));
   CHECK(sharp.to - sharp.value == Approx(1.96e-3));
   CHECK(sharp.value - sharp.from == Approx(1.96e-3));
-  const Interval open = effect_values(data, world().fitted(effects, data, {1}))[0].value;
+  const Interval open = effect_values(data, world().fitted(effects, data, {1}), 9)[0].value;
   CHECK(open.from == -1);
   CHECK(open.to == 1);
 }
@@ -85,7 +85,7 @@ TEST_CASE("Two effects at 60 degrees make each other's interval wider by 1 / sin
   const std::vector<Whole> effects{100 * world().direction(0),
                                    100 * (0.5 * world().direction(0) + std::sqrt(0.75) * world().direction(1))};
   const StageData data = world().data(0.4 * effects[0] - 0.3 * effects[1]);
-  for (const EffectValue& effect : effect_values(data, world().fitted(effects, data, {0, 1})))
+  for (const EffectValue& effect : effect_values(data, world().fitted(effects, data, {0, 1}), 9))
     CHECK(effect.value.to - effect.value.value == Approx(1.96 / (100 * std::sqrt(0.75))));
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("A number of the simulator, the same in all runs, opens a value as far
   StageData data = world().data(0.5 * effect);
   const GroupVectors shape = world().by_group(0.1 * effect);
   for (std::size_t g = 0; g < data.groups.size(); ++g) data.groups[g].shared_shapes = shape[g];
-  const Interval open = effect_values(data, world().fitted({effect}, data, {0}))[0].value;
+  const Interval open = effect_values(data, world().fitted({effect}, data, {0}), 9)[0].value;
   CHECK(open.to - open.value == Approx(1.96 * 0.1).epsilon(0.01));
 }
 
@@ -117,8 +117,8 @@ TEST_CASE("What a value differs by from manoeuvre to manoeuvre is found, and not
           (0.4 + 0.2 * normal(random)) * effect.segment(first, world.bins_of_manoeuvre());
     }
     const StageData differing = world.data(gap), agreeing = world.data(0.4 * effect + noise);
-    const EffectValue differs = effect_values(differing, world.fitted({effect}, differing, {0}))[0];
-    const EffectValue agrees = effect_values(agreeing, world.fitted({effect}, agreeing, {0}))[0];
+    const EffectValue differs = effect_values(differing, world.fitted({effect}, differing, {0}), 9)[0];
+    const EffectValue agrees = effect_values(agreeing, world.fitted({effect}, agreeing, {0}), 9)[0];
     squares += differs.spread * differs.spread;
     wide += differs.spread > 0;
     covered += holds(differs.value, 0.4);
@@ -140,7 +140,7 @@ TEST_CASE("A manoeuvre that hardly shows an effect says little of how far manoeu
   weak.head(first).setZero();
   const Whole effect = 200 / strong.norm() * strong + 2 / weak.norm() * weak;
   const StageData data = world().data(0.5 * effect - 4 / weak.norm() * weak);
-  const EffectValue value = effect_values(data, world().fitted({effect}, data, {0}))[0];
+  const EffectValue value = effect_values(data, world().fitted({effect}, data, {0}), 9)[0];
   CHECK(value.value.value == Approx(0.5).margin(1e-3));
   // q = 1.5^2 x 2^2 = 9 of one degree of freedom, over half of 200^2; some of it is taken for a discrepancy
   CHECK(value.spread == Approx(std::sqrt(8 / 2e4)).epsilon(0.2));
@@ -156,8 +156,8 @@ TEST_CASE("What grows from nothing in the course of manoeuvres is seen as a tren
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const StageData grows = world.data(growing + world.noise(seed)),
                     stays = world.data(0.4 * effect + world.noise(seed));
-    CHECK(effect_values(grows, world.fitted({effect}, grows, {0}))[0].trend == Approx(0.4).epsilon(0.2));
-    alarms += effect_values(stays, world.fitted({effect}, stays, {0}))[0].trend > 0;
+    CHECK(effect_values(grows, world.fitted({effect}, grows, {0}), 9)[0].trend == Approx(0.4).epsilon(0.2));
+    alarms += effect_values(stays, world.fitted({effect}, stays, {0}), 9)[0].trend > 0;
   }
   CHECK(alarms <= 1);  // by chance one in a thousand
 }
@@ -170,7 +170,7 @@ TEST_CASE("A trend in channels that hardly bear on the value is none") {
     const Whole yaw = world.in_channel(test::WorldChannel::yaw, yaw_moves);
     const std::vector<Whole> effects{x + yaw};
     const StageData data = world.data(0.4 * x + growing_to(0.8, yaw, world) + world.noise(1));
-    return effect_values(data, world.fitted(effects, data, {0}))[0].trend;
+    return effect_values(data, world.fitted(effects, data, {0}), 9)[0].trend;
   };
   CHECK(measured(40) == 0);
   CHECK(measured(400) == Approx(0.4).epsilon(0.2));
@@ -194,6 +194,6 @@ TEST_CASE("Where an effect has done all it can, no manoeuvre wants a value out o
   add_points(curves, data, around, Fidelity::every_run, world().simulate(saturates));
   Model model = fit_model(data, curves, std::vector<std::size_t>{0}, {}, no_discrepancy());
   model.places = {at_value(curves.curves, 0, 0.8)};
-  const EffectValue value = effect_values(data, {std::move(model), std::move(curves)})[0];
+  const EffectValue value = effect_values(data, {std::move(model), std::move(curves)}, 9)[0];
   CHECK(value.spread < 0.5);
 }

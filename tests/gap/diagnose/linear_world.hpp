@@ -149,6 +149,12 @@ class LinearWorld {
     return folds;
   }
 
+  static std::size_t channel_of(std::string_view column) {
+    std::size_t channel = 0;
+    while (gap::diagnose::diagnosis_channels()[channel].column != column) ++channel;
+    return channel;
+  }
+
   // The first ones of kCandidates, each from -1 to 1, neutral at 0.
   std::span<const gap::candidates::Candidate> candidates(std::size_t count) const {
     return {candidates_.data(), count};
@@ -221,11 +227,6 @@ class LinearWorld {
   std::vector<std::vector<std::size_t>> repeats;
 
  private:
-  static std::size_t channel_of(std::string_view column) {
-    std::size_t channel = 0;
-    while (gap::diagnose::diagnosis_channels()[channel].column != column) ++channel;
-    return channel;
-  }
   std::vector<gap::candidates::Candidate> candidates_;
   Eigen::MatrixXd cells_;
   gap::diagnose::StageData groups_{gap::diagnose::Passage::drive_to_body, {}};  // without a gap

@@ -144,7 +144,7 @@ TEST_CASE("An effect that jumps stands on one side of the jump, and its interval
                                    standing.curves.curves, 0)
                                .places.front();
     CHECK(dead_band(fitted.value) == 40);
-    const Interval interval = effect_values(data, standing)[0].value;
+    const Interval interval = effect_values(data, standing, 9)[0].value;
     CHECK(interval.from == Approx(0.5).margin(0.01));
     CHECK(interval.from <= 0.5);
     CHECK(interval.to == Approx(0.8).margin(0.01));

@@ -453,3 +453,41 @@ TEST_CASE("An effect that only one manoeuvre shows is judged by its repeats, as 
   CHECK(verdict(1) == Verdict::named);      // the others hardly show it: nothing can be held out
   CHECK(verdict(400) == Verdict::unknown);  // they should, and predict nothing of it
 }
+
+namespace {
+// The judgement of one effect of 1 that explains nearly all of the stage's gap.
+StageDecision judged_with(const EffectValue& value, double simulated = 0.9, double sure_from = 0) {
+  StageDecision decision;
+  decision.effects.push_back({0, value, 100, {}, {}, false, {}, {0}, {}, {}});
+  decision.effects.front().sure_from = sure_from;
+  const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, 1000}}, {}, 0.9};
+  judge(decision, std::vector<Candidate>(1), shares, shares, {});
+  doubt_unless_simulated(decision, simulated, {});
+  doubt_uncertain_values(decision, std::vector<Candidate>(1));
+  return decision;
+}
+}  // namespace
+
+TEST_CASE("An effect that does not fit in some kind of channels resembles the cause, and has no name") {
+  const auto doubts = [](const FitByKind& fit) {
+    return judged_with({{1, 0.9, 1.1}, 0, 1, 0, fit}).effects.front().doubts;
+  };
+  // a value of 0.6 or 1.4 in one kind is 0.4 from that of all; sin(10 degrees) of its shift may be left
+  CHECK(doubts({0, 0, 0.4, 0}) == std::vector<Doubt>{Doubt::kinds_differ});
+  CHECK(doubts({0, 0, 0.2, 0}).empty());
+  CHECK(doubts({0.18, 0, 0, 0}) == std::vector<Doubt>{Doubt::leaves_much});
+  CHECK(doubts({0.17, 0, 0, 0}).empty());
+}
+
+TEST_CASE("A model that explains a gap on curves and not in simulation gives no name") {
+  CHECK(judged_with({{1, 0.9, 1.1}, 0, 1}, 0.15).verdict == Verdict::named);
+  CHECK(judged_with({{1, 0.9, 1.1}, 0, 1}, -0.6).verdict == Verdict::unknown);
+  CHECK(judged_with({{1, 0.9, 1.1}, 0, 1}, GapMeasure::kNotMeasured).verdict == Verdict::unknown);
+}
+
+TEST_CASE("An effect that errors of the description's numbers could be has no name") {
+  CHECK(judged_with({{1, 0.5, 1.5}, 0, 1}, 0.9, 0.9).verdict == Verdict::named);
+  const StageDecision doubtful = judged_with({{1, 0.5, 1.5}, 0, 1}, 0.9, 1.1);
+  CHECK(doubtful.verdict == Verdict::unknown);
+  CHECK(doubtful.effects.front().doubts == std::vector<Doubt>{Doubt::uncertain});
+}

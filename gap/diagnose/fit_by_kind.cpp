@@ -1,0 +1,96 @@
+#include "gap/diagnose/fit_by_kind.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gap/diagnose/channels.hpp"
+
+namespace kenaf::gap::diagnose {
+namespace {
+
+// An effect should explain a kind of channels where its shift is at least this share of the gap (chosen).
+constexpr double kShouldExplain = 0.5;
+// Residuals below this multiple of the noise are not coherent enough to blame an effect for (chosen): noise with a
+// memory is not independent in neighbouring bins.
+constexpr double kOfNoise = 2;
+// Variance of bins that do not count: huge compared with any noise in any unit.
+constexpr double kNotUsed = 1e12;
+
+std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& values) {
+  std::vector<double> squares(kind_count(), 0);
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const StageGroup& group = data.groups[g];
+    for (const Series& series : group.series)
+      squares[series.kind] +=
+          (values[g].array().square() / group.variance.array()).segment(series.first, series.count).sum();
+  }
+  return squares;
+}
+
+std::vector<double> bins_of_kinds(const StageData& data) {
+  std::vector<double> bins(kind_count(), 0);
+  for (const StageGroup& group : data.groups)
+    for (const Series& series : group.series) bins[series.kind] += static_cast<double>(series.count);
+  return bins;
+}
+
+StageData with_kind_alone(StageData data, std::size_t kind) {
+  for (StageGroup& group : data.groups)
+    for (const Series& series : group.series)
+      if (series.kind != kind) group.variance.segment(series.first, series.count).setConstant(kNotUsed);
+  return data;
+}
+
+// The shift of the whole model less that of one effect.
+GroupVectors shift_of_others(const StandingModel& standing, const OnCurve& place) {
+  GroupVectors others = standing.model.shift;
+  const GroupVectors own = shift_of(standing.curves, {&place, 1});
+  for (std::size_t g = 0; g < others.size(); ++g) others[g] -= own[g];
+  return others;
+}
+
+}  // namespace
+
+std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& standing, const GroupVectors& left,
+                                   double borne_out) {
+  const Model& model = standing.model;
+  const Discrepancies& discrepancies = model.likelihood.discrepancies;
+  std::vector<FitByKind> fits(model.places.size());
+  const std::vector<double> bins = bins_of_kinds(data), squares_left = squares_of_kinds(data, left),
+                            squares_of_gap =
+                                squares_of_kinds(data, without_open_shapes(data, residuals_of(data), discrepancies));
+
+  // what is left, beside each effect's own shift
+  std::vector<std::vector<double>> own;
+  for (std::size_t e = 0; e < fits.size(); ++e) {
+    own.push_back(squares_of_kinds(data, shift_of(standing.curves, {&model.places[e], 1})));
+    for (std::size_t k = 0; k < kind_count(); ++k) {
+      const double coherent = squares_left[k] - kOfNoise * kOfNoise * bins[k];
+      if (own[e][k] <= kShouldExplain * kShouldExplain * squares_of_gap[k] || !(coherent > 0)) continue;
+      const double share = std::sqrt(coherent / own[e][k]);
+      if (share > fits[e].left) fits[e].left = share, fits[e].left_in = k;
+    }
+  }
+
+  // the value that each kind wants, the other effects as they are
+  for (std::size_t k = 0; k < kind_count(); ++k) {
+    if (bins[k] == 0) continue;
+    const StageData alone = with_kind_alone(data, k);
+    const double common = likelihood_with(alone, rest_of(data, model), discrepancies).deviance;
+    for (std::size_t e = 0; e < fits.size(); ++e) {
+      if (own[e][k] < bins[k]) continue;
+      const OnCurve& place = model.places[e];
+      const Model wanted = fit_values(alone, standing.curves, std::vector<std::size_t>{place.curve},
+                                      shift_of_others(standing, place), discrepancies);
+      if (common - wanted.deviance() < borne_out) continue;
+      const double value =
+          wanted.places.empty() ? standing.curves.candidates[place.curve].present : wanted.places.front().value;
+      const double apart = std::abs(value - place.value);
+      if (apart > fits[e].apart) fits[e].apart = apart, fits[e].apart_in = k;
+    }
+  }
+  return fits;
+}
+
+}  // namespace kenaf::gap::diagnose
