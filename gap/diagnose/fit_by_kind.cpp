@@ -63,11 +63,14 @@ std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& s
 
   // what is left, beside each effect's own shift
   std::vector<std::vector<double>> own;
+  const auto should_explain = [&](std::size_t effect, std::size_t kind) {
+    return own[effect][kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind];
+  };
   for (std::size_t e = 0; e < fits.size(); ++e) {
     own.push_back(squares_of_kinds(data, shift_of(standing.curves, {&model.places[e], 1})));
     for (std::size_t k = 0; k < kind_count(); ++k) {
       const double coherent = squares_left[k] - kOfNoise * kOfNoise * bins[k];
-      if (own[e][k] <= kShouldExplain * kShouldExplain * squares_of_gap[k] || !(coherent > 0)) continue;
+      if (!should_explain(e, k) || !(coherent > 0)) continue;
       const double share = std::sqrt(coherent / own[e][k]);
       if (share > fits[e].left) fits[e].left = share, fits[e].left_in = k;
     }
@@ -79,7 +82,7 @@ std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& s
     const StageData alone = with_kind_alone(data, k);
     const double common = likelihood_with(alone, rest_of(data, model), discrepancies).deviance;
     for (std::size_t e = 0; e < fits.size(); ++e) {
-      if (own[e][k] < bins[k]) continue;
+      if (!should_explain(e, k) || own[e][k] < bins[k]) continue;
       const OnCurve& place = model.places[e];
       const Model wanted = fit_values(alone, standing.curves, std::vector<std::size_t>{place.curve},
                                       shift_of_others(standing, place), discrepancies);

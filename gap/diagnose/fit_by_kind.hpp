@@ -17,7 +17,7 @@ struct FitByKind {
   // effect, if nothing else acts. The largest of the kinds of channels that the effect should explain.
   double left = 0;
   std::size_t left_in = 0;  // of kind_name()
-  // Largest difference from the common value of a value fitted to one kind alone, among those that the data bear out.
+  // Likewise, the largest difference from the common value of a value fitted to one kind alone that the data bear out.
   double apart = 0;
   std::size_t apart_in = 0;
 };

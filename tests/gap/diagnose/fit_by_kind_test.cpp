@@ -72,6 +72,9 @@ TEST_CASE("The kind of channels that fits worst is told") {
 TEST_CASE("An effect is not blamed for a kind of channels in which it is a small part of the gap") {
   // 50 of 304 in the yaw
   CHECK(fit_of(position(50) + yaw(50) + trembling_yaw(300)).left == 0);
+  // nor for the value that it would have there, while the position still wants 0.15 more
+  CHECK(fit_of(position(50) + yaw(20) + trembling_yaw(300)).apart == Approx(0.15));
+  CHECK(fit_of(position(50) + yaw(20) + trembling_yaw(300)).apart_in == kind("x_m"));
 }
 
 TEST_CASE("Values of kinds that the data do not bear out are not apart") {
