@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "formats/runs/run_file.hpp"
@@ -62,7 +63,7 @@ VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
 }
 
-StageFeatures less(const StageFeatures& stage, const BaselineBins& baseline) {
+StageFeatures less_baseline(const StageFeatures& stage, const BaselineBins& baseline) {
   StageFeatures result{{}, stage.span_s, {}, {}, {}, {}};
   std::vector<double> measured, runs, simulated;
   for (std::size_t b = 0; b < stage.bins.size(); ++b) {
@@ -144,7 +145,7 @@ void compare_against(ComparedFeatures& now, const Baseline& baseline, const Comp
     const auto p = static_cast<std::size_t>(passage);
     for (std::size_t r = 0; r < now.of_stage[p].size(); ++r)
       now.of_stage[p][r] =
-          less(now.of_stage[p][r], bins_of_baseline(baseline.of_run[r], before.of(passage), residuals[p]));
+          less_baseline(now.of_stage[p][r], bins_of_baseline(baseline.of_run[r], before.of(passage), residuals[p]));
   }
 }
 
@@ -160,7 +161,7 @@ void add_roughness_of_starts(std::vector<OpenShapes>& open, const std::vector<St
     const VectorXd difference = (simulated[r] - features[r].baseline_simulated).cwiseQuotient(counts);
     const VectorXd rest = difference - start * start.completeOrthogonalDecomposition().solve(difference);
     const VectorXd rough = largest_beside(features[r].bins, rest.cwiseAbs()).cwiseProduct(counts);
-    open[r].roughness = (open[r].roughness.array().square() + 2 * rough.array().square()).sqrt().matrix();
+    open[r].roughness = root_of_squares(open[r].roughness, std::numbers::sqrt2 * rough);
   }
 }
 

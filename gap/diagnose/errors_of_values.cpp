@@ -37,7 +37,8 @@ Settings with(Settings settings, const Settings& more) {
 }
 
 // For each group, in columns: what wrong numbers do to the robot with the model's effects (first half of the columns),
-// and to the one without them. Against a baseline the former is the change of that difference, the latter nothing.
+// and to the one without them. Against a baseline the former is the change of that difference, the latter nothing, as
+// it is if not asked for.
 std::vector<MatrixXd> differences_of_robots(const StageData& data, const StandingModel& standing,
                                             const NumbersOff& numbers, const Simulate& simulate, std::uint64_t seed) {
   const Settings model = settings_of(standing.model.places);
@@ -48,13 +49,15 @@ std::vector<MatrixXd> differences_of_robots(const StageData& data, const Standin
     with_effects.push_back(with(model, off));
     without.push_back(std::move(off));
   }
-  const std::vector<GroupVectors> shifts = simulate(with_effects, Fidelity::fine),
-                                  shifts_without = simulate(without, Fidelity::fine);
+  const std::vector<GroupVectors> shifts = simulate(with_effects, Fidelity::fine);
+  std::vector<GroupVectors> shifts_without;
+  if (numbers.also_before || numbers.also_without) shifts_without = simulate(without, Fidelity::fine);
   std::vector<MatrixXd> differences;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     differences.emplace_back(std::ssize(data.groups[g].bins), 2 * kRobots);
     for (std::size_t i = 0; i < kRobots; ++i) {
-      VectorXd changed = shifts[i + 1][g] - shifts[0][g], unchanged = shifts_without[i + 1][g] - shifts_without[0][g];
+      VectorXd changed = shifts[i + 1][g] - shifts[0][g], unchanged = VectorXd::Zero(changed.size());
+      if (!shifts_without.empty()) unchanged = shifts_without[i + 1][g] - shifts_without[0][g];
       if (numbers.also_before) {
         changed -= unchanged;
         unchanged.setZero();

@@ -24,6 +24,7 @@ struct NumbersOff {
   std::vector<std::size_t> candidates;  // none of them with a value in the model
   double sigma = 0;                     // as a fraction of Candidate::whole
   bool also_before = false;             // also in the baseline that the data are compared with
+  bool also_without = true;             // also on a robot without the model's effects
 };
 
 // Standard errors of one value. Those of numbers come from so few robots that Student's t takes the place of the normal
@@ -31,8 +32,8 @@ struct NumbersOff {
 struct ErrorOfValue {
   double of_noise = 0;    // and discrepancies
   double of_numbers = 0;  // with wrong values, on the robot with the model's effects
-  // Likewise, on the robot without them; 0 against a baseline. Where that one slides or climbs and the other one does
-  // not, wrong numbers may do much more to it, and look like an effect.
+  // Likewise, on the robot without them; 0 against a baseline, and if it was not asked for. Where that one slides or
+  // climbs and the other one does not, wrong numbers may do much more to it, and look like an effect.
   double of_numbers_without = 0;
 
   double half_width() const;  // of the 95 % interval

@@ -14,8 +14,6 @@ constexpr double kShouldExplain = 0.5;
 // Residuals below this multiple of the noise are not coherent enough to blame an effect for (chosen): noise with a
 // memory is not independent in neighbouring bins.
 constexpr double kOfNoise = 2;
-// Variance of bins that do not count: huge compared with any noise in any unit.
-constexpr double kNotUsed = 1e12;
 
 std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& values) {
   std::vector<double> squares(kind_count(), 0);
@@ -38,16 +36,8 @@ std::vector<double> bins_of_kinds(const StageData& data) {
 StageData with_kind_alone(StageData data, std::size_t kind) {
   for (StageGroup& group : data.groups)
     for (const Series& series : group.series)
-      if (series.kind != kind) group.variance.segment(series.first, series.count).setConstant(kNotUsed);
+      if (series.kind != kind) group.variance.segment(series.first, series.count).setConstant(kVarianceIfUnused);
   return data;
-}
-
-// The shift of the whole model less that of one effect.
-GroupVectors shift_of_others(const StandingModel& standing, const OnCurve& place) {
-  GroupVectors others = standing.model.shift;
-  const GroupVectors own = shift_of(standing.curves, {&place, 1});
-  for (std::size_t g = 0; g < others.size(); ++g) others[g] -= own[g];
-  return others;
 }
 
 }  // namespace
@@ -61,31 +51,38 @@ std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& s
                             squares_of_gap =
                                 squares_of_kinds(data, without_open_shapes(data, residuals_of(data), discrepancies));
 
-  // what is left, beside each effect's own shift
-  std::vector<std::vector<double>> own;
+  // each effect's own shift, and the kinds that it should explain
+  std::vector<GroupVectors> own;
+  std::vector<std::vector<double>> squares_of_own;
+  for (const OnCurve& place : model.places) {
+    own.push_back(shift_of(standing.curves, {&place, 1}));
+    squares_of_own.push_back(squares_of_kinds(data, own.back()));
+  }
   const auto should_explain = [&](std::size_t effect, std::size_t kind) {
-    return own[effect][kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind];
+    return squares_of_own[effect][kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind];
   };
-  for (std::size_t e = 0; e < fits.size(); ++e) {
-    own.push_back(squares_of_kinds(data, shift_of(standing.curves, {&model.places[e], 1})));
+
+  // what is left, beside that shift
+  for (std::size_t e = 0; e < fits.size(); ++e)
     for (std::size_t k = 0; k < kind_count(); ++k) {
       const double coherent = squares_left[k] - kOfNoise * kOfNoise * bins[k];
       if (!should_explain(e, k) || !(coherent > 0)) continue;
-      const double share = std::sqrt(coherent / own[e][k]);
+      const double share = std::sqrt(coherent / squares_of_own[e][k]);
       if (share > fits[e].left) fits[e].left = share, fits[e].left_in = k;
     }
-  }
 
   // the value that each kind wants, the other effects as they are
   for (std::size_t k = 0; k < kind_count(); ++k) {
-    if (bins[k] == 0) continue;
+    std::vector<std::size_t> shown;
+    for (std::size_t e = 0; e < fits.size(); ++e)
+      if (bins[k] > 0 && should_explain(e, k) && squares_of_own[e][k] >= bins[k]) shown.push_back(e);
+    if (shown.empty()) continue;
     const StageData alone = with_kind_alone(data, k);
     const double common = likelihood_with(alone, rest_of(data, model), discrepancies).deviance;
-    for (std::size_t e = 0; e < fits.size(); ++e) {
-      if (!should_explain(e, k) || own[e][k] < bins[k]) continue;
+    for (const std::size_t e : shown) {
       const OnCurve& place = model.places[e];
       const Model wanted = fit_values(alone, standing.curves, std::vector<std::size_t>{place.curve},
-                                      shift_of_others(standing, place), discrepancies);
+                                      less(model.shift, own[e]), discrepancies);
       if (common - wanted.deviance() < borne_out) continue;
       const double value =
           wanted.places.empty() ? standing.curves.candidates[place.curve].present : wanted.places.front().value;

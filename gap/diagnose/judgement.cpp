@@ -19,8 +19,7 @@ bool is_lack_of_share(Doubt doubt) {
 
 // Doubts that say nothing of effects that stand in for each other: one takes up what another misses.
 bool is_misfit_of_one(Doubt doubt) {
-  return doubt == Doubt::disagreement || doubt == Doubt::trend || doubt == Doubt::kinds_differ ||
-         doubt == Doubt::leaves_much;
+  return doubt == Doubt::disagreement || doubt == Doubt::trend || is_misfit_of_kinds(doubt);
 }
 
 // Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
@@ -32,10 +31,39 @@ double change_by(const ModelEffect& effect, const candidates::Candidate& candida
   return std::abs(effect.value.value.value - candidate.present);
 }
 
+// A set of effects, and the weaker one of its shares with repeats and with manoeuvres held out.
+struct SetOfEffects {
+  std::vector<std::size_t> places;
+  HeldOutShares::OfEffect share;
+};
+
+// Small sets first, and of the same size those that explain most.
+std::vector<SetOfEffects> in_order(const std::vector<HeldOutShares::OfSet>& sets,
+                                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre,
+                                   const DecisionSettings& settings) {
+  std::vector<SetOfEffects> ordered;
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const HeldOutShares::OfEffect &by_repeat = sets[s].share, &by_manoeuvre = sets_by_manoeuvre[s].share;
+    const bool is_weaker =
+        by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < by_repeat.of_kind;
+    ordered.push_back({sets[s].places, is_weaker ? by_manoeuvre : by_repeat});
+  }
+  std::ranges::stable_sort(ordered, [](const SetOfEffects& a, const SetOfEffects& b) {
+    return a.places.size() != b.places.size() ? a.places.size() < b.places.size() : a.share.of_stage > b.share.of_stage;
+  });
+  return ordered;
+}
+
+bool explains_enough(const SetOfEffects& set, const DecisionSettings& settings) {
+  return set.share.of_kind >= settings.effect_share && takes_off_enough(set.share, settings) &&
+         set.share.model_of_kind >= settings.model_share;
+}
+
 // Effects that substitute for each other, like a lag and a ramp: without one the others explain most of it, without all
-// of them the gap remains. They are named as a set, the smallest that explains enough.
-void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
-                  const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
+// of them the gap remains. They are named as a set, the smallest that explains enough, with the effects that also
+// substitute for it.
+void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<SetOfEffects>& sets,
+                  const DecisionSettings& settings) {
   // their individual shares are unknown, so manoeuvres, parts of them, and kinds of channels may disagree on these
   const auto lacks_share = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
@@ -43,36 +71,44 @@ void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<HeldOutSh
            std::ranges::all_of(doubts, [](Doubt doubt) { return is_lack_of_share(doubt) || is_misfit_of_one(doubt); });
   };
   const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
+  const auto alone = [&](std::size_t place) { return std::max(0.0, effects[place].share.of_stage); };
 
-  // an effect is in one set at most
+  // an effect is in one set at most; with a name of its own only in one whose members substitute for it
   const auto may_join = [&](std::size_t place) {
     return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
   };
-  const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
-    double alone = 0;
-    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
-    return together.of_stage > kCommon * alone;
+  const auto substitute = [&](const SetOfEffects& set) {
+    double sum = 0;
+    for (const std::size_t place : set.places) sum += alone(place);
+    return set.share.of_stage > kCommon * sum;
+  };
+  const auto is_named_together = [&](const SetOfEffects& set) {
+    return std::ranges::all_of(set.places, may_join) && std::ranges::any_of(set.places, lacks_share) &&
+           explains_enough(set, settings) && (std::ranges::none_of(set.places, is_named) || substitute(set));
   };
 
-  // small sets first: the weaker of both shares has to suffice
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    const std::vector<std::size_t>& places = sets[s].places;
-    if (!std::ranges::all_of(places, may_join) || std::ranges::none_of(places, lacks_share)) continue;
-    HeldOutShares::OfEffect share = sets[s].share;
-    const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
-    if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
-    if (share.of_kind < settings.effect_share || !takes_off_enough(share, settings) ||
-        share.model_of_kind < settings.model_share)
-      continue;
-    // an effect with a name of its own joins only sets whose members substitute for it
-    if (std::ranges::any_of(places, is_named) && !stand_in(places, share)) continue;
+  // whether one more effect without a share explains so much more with the set than by itself that it would be a cause
+  const auto grows_to = [&](const SetOfEffects& set, const SetOfEffects& larger) {
+    if (larger.places.size() != set.places.size() + 1 || !std::ranges::includes(larger.places, set.places))
+      return false;
+    const std::size_t more = *std::ranges::find_if(
+        larger.places, [&](std::size_t place) { return std::ranges::count(set.places, place) == 0; });
+    return lacks_share(more) && is_named_together(larger) &&
+           larger.share.of_stage - set.share.of_stage - alone(more) >= settings.stage_share;
+  };
+
+  for (const SetOfEffects& smallest : sets) {
+    if (!is_named_together(smallest)) continue;
+    const SetOfEffects* set = &smallest;
+    for (const SetOfEffects& larger : sets)
+      if (grows_to(*set, larger)) set = &larger;
 
     // its members are named, as each other's partners and rivals
-    for (const std::size_t place : places) {
+    for (const std::size_t place : set->places) {
       ModelEffect& effect = effects[place];
       effect.doubts.clear();
-      effect.share_of_set = share;
-      for (const std::size_t other : places) {
+      effect.share_of_set = set->share;
+      for (const std::size_t other : set->places) {
         if (other == place) continue;
         effect.partners.push_back(other);
         effect.rivals.insert(effect.rivals.begin() + std::ssize(effect.partners), effects[other].candidate);
@@ -93,6 +129,13 @@ Verdict verdict_of(const std::vector<ModelEffect>& effects) {
 
 bool has_names(const StageDecision& decision) {
   return decision.verdict == Verdict::named || decision.verdict == Verdict::ambiguous;
+}
+
+std::vector<std::size_t> places_where(const StageDecision& decision, bool (*holds)(const ModelEffect&)) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < decision.effects.size(); ++i)
+    if (holds(decision.effects[i])) places.push_back(i);
+  return places;
 }
 
 }  // namespace
@@ -138,7 +181,7 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
   }
 
   // then sets, and the verdict from what has a name
-  name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
+  name_in_sets(d.effects, in_order(shares.sets, shares_by_manoeuvre.sets, settings), settings);
   d.verdict = verdict_of(d.effects);
 }
 
@@ -156,6 +199,15 @@ void doubt_uncertain_values(StageDecision& d, std::span<const candidates::Candid
       effect.doubts.push_back(Doubt::uncertain);
   }
   d.verdict = verdict_of(d.effects);
+}
+
+std::vector<std::size_t> places_with_name(const StageDecision& decision) {
+  return places_where(decision, [](const ModelEffect& effect) { return effect.doubts.empty(); });
+}
+
+std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
+  return places_where(decision,
+                      [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, is_misfit_of_kinds); });
 }
 
 }  // namespace kenaf::gap::diagnose

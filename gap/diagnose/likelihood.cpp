@@ -264,6 +264,11 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
   return result;
 }
 
+GroupVectors less(GroupVectors a, const GroupVectors& b) {
+  for (std::size_t g = 0; g < a.size(); ++g) a[g] -= b[g];
+  return a;
+}
+
 Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, const Discrepancies& start) {
   const Index numbers = data.groups.empty() ? 0 : data.groups.front().number_shapes.cols();
   Discrepancies discrepancies = start;

@@ -21,6 +21,8 @@ namespace kenaf::gap::diagnose {
 
 using GroupVectors = std::vector<Eigen::VectorXd>;  // the bins of each group of a stage
 
+GroupVectors less(GroupVectors a, const GroupVectors& b);  // a - b
+
 // The discrepancies of a model.
 struct Discrepancies {
   std::vector<Discrepancy> of_kind;  // of channels

@@ -46,11 +46,6 @@ OnCurve in_whole(OnCurve place, const Selection& selection, std::span<const std:
   return place;
 }
 
-GroupVectors less(GroupVectors a, const GroupVectors& b) {
-  for (std::size_t g = 0; g < a.size(); ++g) a[g] -= b[g];
-  return a;
-}
-
 bool is_visible(const EffectCurve& curve) {
   return curve.visible > 1 && curve.points.size() > 1;
 }

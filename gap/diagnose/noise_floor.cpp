@@ -50,10 +50,6 @@ std::vector<std::size_t> measured_channels(const std::vector<StageFeatures>& fea
   return {channels.begin(), channels.end()};
 }
 
-VectorXd hypot(const VectorXd& a, const VectorXd& b) {
-  return (a.array().square() + b.array().square()).sqrt();
-}
-
 Eigen::MatrixXd all_shapes(const OpenShapes& open) {
   Eigen::MatrixXd shapes(open.roughness.size(), open.local.cols() + open.numerics.cols());
   shapes << open.local, open.numerics;
@@ -182,7 +178,7 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   const auto whiten = [&] {
     for (std::size_t r = 0; r < features.size(); ++r) {
       floor.noise_of_bin[r] = sigma_of_bins(features[r], sigma_of_run[r], full);
-      floor.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], open[r].roughness);
+      floor.sigma_of_bin[r] = root_of_squares(floor.noise_of_bin[r], open[r].roughness);
       floor.whiteners[r] = Whitener(floor.sigma_of_bin[r], all_shapes(open[r]));
     }
   };
@@ -202,6 +198,10 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   return floor;
 }
 
+VectorXd root_of_squares(const VectorXd& a, const VectorXd& b) {
+  return (a.array().square() + b.array().square()).sqrt();
+}
+
 double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>& features,
                       const std::vector<VectorXd>& deviations, const std::vector<std::vector<std::size_t>>& repeats) {
   const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
@@ -219,7 +219,7 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
   for (std::size_t r = 0; r < open.size(); ++r) {
     result.open[r] = open[r];
     result.open[r].roughness = floor.open[r].roughness.cwiseMax(open[r].roughness);
-    result.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], result.open[r].roughness);
+    result.sigma_of_bin[r] = root_of_squares(floor.noise_of_bin[r], result.open[r].roughness);
     result.whiteners[r] = Whitener(result.sigma_of_bin[r], all_shapes(open[r]));
   }
   return result;

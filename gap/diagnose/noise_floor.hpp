@@ -79,6 +79,9 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
                        const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open,
                        std::span<const double> stated = {});
 
+// Standard deviations of sums of independent errors with standard deviations `a` and `b`, element by element.
+Eigen::VectorXd root_of_squares(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
 // Whitened rms of the deviations between repeats, over bins that at least two of them have; 1 without repeats.
 double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>& features,
                       const std::vector<Eigen::VectorXd>& deviations,

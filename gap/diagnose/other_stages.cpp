@@ -15,8 +15,7 @@ struct LeftThere {
   double deviance, squares;
 };
 LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
-  GroupVectors rest = residuals_of(decision.data);
-  for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= shift[g];
+  const GroupVectors rest = less(residuals_of(decision.data), shift);
   const Likelihood likelihood = likelihood_of(decision.data, rest, decision.best.model.likelihood.discrepancies);
   return {likelihood.deviance,
           squares_in_noise(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
@@ -71,9 +70,7 @@ std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& s
 // Whether a stage has the candidate in its best model and finds that it does not fit there.
 bool is_misfit(const StageDecision& decision, std::size_t candidate) {
   return std::ranges::any_of(decision.effects, [&](const ModelEffect& effect) {
-    return effect.candidate == candidate && std::ranges::any_of(effect.doubts, [](Doubt doubt) {
-             return doubt == Doubt::leaves_much || doubt == Doubt::kinds_differ;
-           });
+    return effect.candidate == candidate && std::ranges::any_of(effect.doubts, is_misfit_of_kinds);
   });
 }
 

@@ -41,9 +41,8 @@ std::vector<std::size_t> without_same_parts(const StageData& data, std::span<con
   const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::coarse);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const GroupVectors& of_whole = shifts[2 * i];
-    GroupVectors difference = of_whole;
-    for (std::size_t g = 0; g < difference.size(); ++g) difference[g] -= shifts[2 * i + 1][g];
-    if (length_in_noise(data, difference) <= kSame * length_in_noise(data, of_whole)) std::erase(kept, pairs[i].part);
+    if (length_in_noise(data, less(of_whole, shifts[2 * i + 1])) <= kSame * length_in_noise(data, of_whole))
+      std::erase(kept, pairs[i].part);
   }
   return kept;
 }

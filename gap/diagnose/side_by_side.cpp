@@ -54,17 +54,11 @@ double value_at(const EffectCurves& curves, const Model& model, const Side& side
                     candidate.max);
 }
 
-GroupVectors difference(const GroupVectors& a, const GroupVectors& b) {
-  GroupVectors result = a;
-  for (std::size_t g = 0; g < a.size(); ++g) result[g] -= b[g];
-  return result;
-}
-
 // For a side without a shift: finds by bisection how far that holds, and the point after it.
 void look_beyond_flat(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Model& model,
                       double length, Side& flat, std::vector<Side>& more) {
   const candidates::Candidate& candidate = curves.candidates[model.places[flat.place].curve];
-  const auto moved_by = [&](const Side& side) { return length_in_noise(data, difference(side.shift, model.shift)); };
+  const auto moved_by = [&](const Side& side) { return length_in_noise(data, less(side.shift, model.shift)); };
   if (flat.jumps || length < kShifted_floors || moved_by(flat) > kSame_floors) return;
   const auto simulated_at = [&](double value) {
     std::vector<Settings> asked{settings_of(model.places)};
@@ -121,7 +115,7 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
     for (std::size_t a = 0; a < asked.size(); ++a) {
       Side& side = sides[to_seek[a]];
       side.shift = std::move(simulated[a]);
-      const double moved = length_in_noise(data, difference(side.shift, model.shift));
+      const double moved = length_in_noise(data, less(side.shift, model.shift));
       const double expected = std::max(kShifted_floors, side.share * lengths[side.place]);
       if (moved <= kRoundABend * expected) continue;
       side.jumps = is_last && moved > kJump * lengths[side.place];

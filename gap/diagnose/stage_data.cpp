@@ -13,8 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Variance of a bin without a used run: huge compared with any noise in any unit.
-constexpr double kNotMeasured = 1e12;
 // Share of the numerics' standard deviation that is separate in each group (chosen): shapes are linear in them to about
 // that.
 constexpr double kNumericsOfRun = 0.3;
@@ -95,7 +93,7 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     // noise is independent between runs: the variance of a mean of n is 1 / n of that of one
     const MatrixXd variance =
         mean_over_runs(group, 1, used, [&](std::size_t r) { return VectorXd(floor.sigma_of_bin[r].array().square()); });
-    group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kNotMeasured);
+    group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kVarianceIfUnused);
 
     // so are start poses and counts; the simulator's numbers are the same in all runs, except for nonlinear effects:
     // only these remain against a baseline

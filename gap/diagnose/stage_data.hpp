@@ -16,6 +16,9 @@
 
 namespace kenaf::gap::diagnose {
 
+// Variance of a bin that does not count: huge compared with any noise in any unit.
+inline constexpr double kVarianceIfUnused = 1e12;
+
 // Consecutive bins of one channel.
 struct Series {
   Eigen::Index first, count;

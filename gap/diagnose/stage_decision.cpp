@@ -263,6 +263,10 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   return d;
 }
 
+bool is_misfit_of_kinds(Doubt doubt) {
+  return doubt == Doubt::leaves_much || doubt == Doubt::kinds_differ;
+}
+
 OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places) {
   OtherModel other{{}, settings_of(decided.best.model.places)};
   for (const std::size_t place : places) other.model.push_back(other.around[place]);

@@ -62,6 +62,10 @@ struct GapTest {
   double stretch_s = 1;  // of a cell
 };
 
+// Whether kinds of channels contradict the effect: it resembles what it explains, and is not its cause
+// (fit_by_kind.hpp).
+bool is_misfit_of_kinds(Doubt doubt);
+
 // An effect of a best model, with or without a name.
 struct ModelEffect {
   std::size_t candidate;

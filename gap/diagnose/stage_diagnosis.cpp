@@ -182,25 +182,6 @@ void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings)
     stage.decision.verdict = Verdict::none;
 }
 
-std::vector<std::size_t> places_with_name(const StageDecision& decision) {
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < decision.effects.size(); ++i)
-    if (decision.effects[i].doubts.empty()) places.push_back(i);
-  return places;
-}
-
-// Effects with a name, and those that only resemble what they explain: without them that would bend the others' values.
-std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
-  const auto is_kept = [](const ModelEffect& effect) {
-    return std::ranges::all_of(effect.doubts,
-                               [](Doubt doubt) { return doubt == Doubt::leaves_much || doubt == Doubt::kinds_differ; });
-  };
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < decision.effects.size(); ++i)
-    if (is_kept(decision.effects[i])) places.push_back(i);
-  return places;
-}
-
 }  // namespace
 
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
@@ -257,7 +238,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   };
   if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
 
-  // only the named effects and those that stand for something, unless the named ones need the others to be significant
+  // only effects with a name and their look-alikes, unless the named ones need the others to be significant
   const std::size_t names = places_with_name(stage.decision).size();
   const std::vector<std::size_t> kept = places_to_keep(stage.decision);
   if (names > 0 && kept.size() < stage.decision.effects.size()) {
@@ -299,8 +280,10 @@ void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predi
   std::vector<std::size_t> of_all_stages(prepared.candidates.size());
   std::iota(of_all_stages.begin(), of_all_stages.end(), std::size_t{0});
   const EffectSet valued = effects_of(decision.best.model);
-  const NumbersOff numbers{numbers_but(prepared.candidates, of_all_stages, valued), numbers_off,
-                           has_baseline(*prepared.input.features)};
+  const NumbersOff numbers{.candidates = numbers_but(prepared.candidates, of_all_stages, valued),
+                           .sigma = numbers_off,
+                           .also_before = has_baseline(*prepared.input.features),
+                           .also_without = !places_with_name(decision).empty()};
   const std::vector<ErrorOfValue> errors =
       errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), options.seed);
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {

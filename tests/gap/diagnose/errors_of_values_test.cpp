@@ -20,14 +20,14 @@ namespace {
 // of 1 that may be off by 0.1 (1 sigma), and shifts by `moved` beside the effect.
 constexpr double kValue = 0.5, kPerValue = 100, kOff = 0.1;
 
-ErrorOfValue error_of_value(const LinearWorld::Moved& moved, bool also_before = false, double numbers_off = kOff) {
+ErrorOfValue error_of_value(const LinearWorld::Moved& moved, const NumbersOff& numbers = {{1}, kOff}) {
   std::vector<Candidate> candidates(2, world().candidates(1)[0]);
   candidates[1].whole = 1;
   const Whole effect = kPerValue * world().direction(0);
   const StageData data = world().data(kValue * effect);
   StandingModel standing = world().fitted({effect, world().direction(1)}, data, {0});
   standing.curves.candidates = candidates;
-  return errors_of_values(data, standing, {{1}, numbers_off, also_before}, world().simulate(moved), 1)[0];
+  return errors_of_values(data, standing, numbers, world().simulate(moved), 1)[0];
 }
 
 double value_in(const Settings& settings, std::size_t candidate) {
@@ -46,9 +46,9 @@ TEST_CASE("A number that makes an effect larger by as much leaves its value as m
   const ErrorOfValue error = error_of_value(larger);
   CHECK(error.of_noise == Approx(1 / kPerValue));
   CHECK(error.of_numbers == Approx(0.05).epsilon(0.5));
-  CHECK(error_of_value(larger, false, 0).of_numbers == 0);
+  CHECK(error_of_value(larger, {{1}, 0}).of_numbers == 0);
   // twice as far off, twice as wrong
-  CHECK(error_of_value(larger, false, 2 * kOff).of_numbers == Approx(2 * error.of_numbers));
+  CHECK(error_of_value(larger, {{1}, 2 * kOff}).of_numbers == Approx(2 * error.of_numbers));
 }
 
 TEST_CASE("What wrong numbers do to the robot without an effect counts by itself") {
@@ -60,7 +60,8 @@ TEST_CASE("What wrong numbers do to the robot without an effect counts by itself
   const ErrorOfValue error = error_of_value(only_without);
   CHECK(error.of_numbers == Approx(0).margin(1e-9));
   CHECK(error.of_numbers_without == Approx(0.2).epsilon(0.5));
-  CHECK(error_of_value(only_without, true).of_numbers_without == 0);
+  CHECK(error_of_value(only_without, {{1}, kOff, true}).of_numbers_without == 0);
+  CHECK(error_of_value(only_without, {{1}, kOff, false, false}).of_numbers_without == 0);
 }
 
 TEST_CASE("A number that does something else, or does it in the baseline as well, leaves a value as noise does") {
@@ -72,7 +73,7 @@ TEST_CASE("A number that does something else, or does it in the baseline as well
     return kPerValue * (value_in(settings, 0) + value_in(settings, 1)) * world().direction(0);
   };
   CHECK(error_of_value(the_same).of_numbers > 5 / kPerValue);
-  CHECK(error_of_value(the_same, true).of_numbers == Approx(0).margin(1e-9));
+  CHECK(error_of_value(the_same, {{1}, kOff, true}).of_numbers == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("Errors from eight robots reach further than as many from noise, and the more so the rarer they are") {

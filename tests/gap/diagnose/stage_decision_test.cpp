@@ -405,6 +405,25 @@ TEST_CASE(
   CHECK(each_its_own.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
 }
 
+TEST_CASE("Of several sets that explain enough the one counts that explains most, with all that substitute for it") {
+  const auto share = [](double taken) { return HeldOutShares::OfEffect{taken, taken, taken, 0, 0.9, 1000}; };
+  const auto partners_of_last = [&](double all_three) {
+    StageDecision decision;
+    for (const std::size_t c : {0u, 1u, 2u})
+      decision.effects.push_back({c, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {c}, {}, {}});
+    const HeldOutShares shares{
+        {share(0.02), share(0.05), share(0.1)},
+        {{{0, 1}, share(0.25)}, {{0, 2}, share(0.21)}, {{1, 2}, share(0.3)}, {{0, 1, 2}, share(all_three)}},
+        0.9};
+    judge(decision, std::vector<Candidate>(3), shares, shares, {});
+    return decision.effects.back().partners;
+  };
+  // the first one adds its own 0.02 and 0.09 to 0.3: less than a share of the stage that would give a name
+  CHECK(partners_of_last(0.41) == std::vector<std::size_t>{1});
+  // 0.11: what the three of them take off and no two of them
+  CHECK(partners_of_last(0.43) == std::vector<std::size_t>{0, 1});
+}
+
 TEST_CASE("Of a lag and a ramp, which together are one step's course, neither is asked to be the same early and late") {
   StageDecision decision;
   for (const std::size_t c : {0u, 1u})
@@ -477,6 +496,20 @@ TEST_CASE("An effect that does not fit in some kind of channels resembles the ca
   CHECK(doubts({0, 0, 0.2, 0}).empty());
   CHECK(doubts({0.18, 0, 0, 0}) == std::vector<Doubt>{Doubt::leaves_much});
   CHECK(doubts({0.17, 0, 0, 0}).empty());
+}
+
+TEST_CASE("A look-alike stays in the model without a name, and what explains nothing does not") {
+  StageDecision decision;
+  for (const std::vector<Doubt>& doubts : {std::vector<Doubt>{},
+                                           {Doubt::leaves_much},
+                                           {Doubt::kinds_differ, Doubt::leaves_much},
+                                           {Doubt::not_held_out},
+                                           {Doubt::leaves_much, Doubt::end_of_range}}) {
+    decision.effects.emplace_back();
+    decision.effects.back().doubts = doubts;
+  }
+  CHECK(places_with_name(decision) == std::vector<std::size_t>{0});
+  CHECK(places_to_keep(decision) == std::vector<std::size_t>{0, 1, 2});
 }
 
 TEST_CASE("A model that explains a gap on curves and not in simulation gives no name") {
