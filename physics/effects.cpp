@@ -72,7 +72,7 @@ constexpr P kTrackingScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::tracking_scale}}
 constexpr P kTrackedPointForward[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_forward_m}};
 constexpr P kTrackedPointLeft[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_left_m}};
 constexpr P kTrackingTurn[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::tracking_turn_rad}};
-constexpr P kClockOffset[] = {{"offset_s", "s", 0, -0.5, 0.5, &E::clock_offset_s}};
+constexpr P kClockOffset[] = {{"offset_s", "s", 0, -1, 1, &E::clock_offset_s}};
 
 constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},

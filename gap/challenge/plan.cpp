@@ -280,7 +280,8 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
       do {
         plan.effects.resize(1);
         hide(pairs, 2, kSmallestTimesOfPair);
-      } while (plan.effects[0].effect == plan.effects[1].effect);
+      } while (plan.effects[0].effect == plan.effects[1].effect ||
+               stand_in_for_each_other(plan.effects[0].effect, plan.effects[1].effect));
     }
     if (stratum == Stratum::foreign) {
       plan.foreign = foreign[below(random, foreign.size())].name;

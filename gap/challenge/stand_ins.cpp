@@ -40,6 +40,12 @@ std::vector<std::string> withheld_names(const CasePlan& plan) {
   return names;
 }
 
+bool stand_in_for_each_other(std::string_view one, std::string_view other) {
+  return std::ranges::any_of(kStandIns, [&](const StandIn& stand_in) {
+    return (stand_in.effect == one && stand_in.other == other) || (stand_in.effect == other && stand_in.other == one);
+  });
+}
+
 std::vector<std::string> numbers_like(std::string_view effect) {
   std::vector<std::string> keys;
   for (const candidates::Candidate& number : challenged_numbers())

@@ -17,6 +17,9 @@ namespace kenaf::gap::challenge {
 // Returns names of candidates for --without: the withheld ones of a case and their stand-ins. Empty in other strata.
 std::vector<std::string> withheld_names(const CasePlan& plan);
 
+// Whether either stands in for the other. A pair of them would be a single, and no report could name both.
+bool stand_in_for_each_other(std::string_view one, std::string_view other);
+
 // Returns the numbers of the description that do the same as this effect, or nearly. A background does not move them,
 // because the effect's value would then not be the hidden one.
 std::vector<std::string> numbers_like(std::string_view effect);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/description/description_error.hpp"
+#include "physics/files/sdf_merge.hpp"
 #include "physics/files/sdf_values.hpp"
 
 namespace kenaf::physics {
@@ -57,7 +58,12 @@ void SdfAssembly::put_includes(SdfElement& parent, int depth) {
     if (is_model && depth + 1 > kMostNestedModels)
       fail_at(child, fmt::format("models are nested more than {} deep", kMostNestedModels));
     if (child.name == "include") {
-      if (std::optional<SdfElement> model = included(child, depth + 1)) children.push_back(std::move(*model));
+      std::optional<SdfElement> model = included(child, depth + 1);
+      if (!model) continue;
+      if (is_merged(child, *model, parent))
+        add_merged(std::move(*model), children);
+      else
+        children.push_back(std::move(*model));
       continue;
     }
     if (is_model || child.name == "link" || child.name == "collision" || child.name == "frame" || child.name == "joint")
@@ -66,6 +72,17 @@ void SdfAssembly::put_includes(SdfElement& parent, int depth) {
   }
   parent.children = std::move(children);
   check_sibling_names(parent);
+}
+
+// Whether an <include> asks for that, and it can be done.
+bool SdfAssembly::is_merged(const SdfElement& include, const SdfElement& model, const SdfElement& parent) {
+  if (!truth_attribute_of(include, "merge", false)) return false;
+  const bool is_possible = parent.name == "model" && attribute_of(model, "placement_frame").empty();
+  if (!is_possible)
+    notes_.add(place_of(include),
+               "merge is simulated only in a <model>, and of one without a placement frame: this "
+               "one keeps its own frames and names");
+  return is_possible;
 }
 
 std::optional<fs::path> SdfAssembly::file_of(const SdfElement& include) {

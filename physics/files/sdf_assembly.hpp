@@ -23,7 +23,8 @@ class SdfAssembly {
 
   SdfAssembly(WorldFiles& files, SdfNotes& notes) : files_(files), notes_(notes) {}
 
-  // Replaces each <include> in a <world> by its model: named, placed and made static as the <include> says
+  // Replaces each <include> in a <world> by its model, or by what is in it (sdf_merge.hpp): named, placed and made
+  // static as the <include> says
   // (http://sdformat.org/tutorials?tut=composition). One that is not found, not local or holds no model is noted and
   // left out. Throws DescriptionError ("file:line: what") for files as WorldFiles and sdf_document.hpp do, if a file
   // includes itself (with the chain of files), and beyond the limits.
@@ -31,6 +32,7 @@ class SdfAssembly {
 
  private:
   void put_includes(SdfElement& parent, int depth);
+  bool is_merged(const SdfElement& include, const SdfElement& model, const SdfElement& parent);
   std::optional<SdfElement> included(const SdfElement& include, int depth);
   std::optional<std::filesystem::path> file_of(const SdfElement& include);
   const std::optional<SdfElement>& model_of(const std::filesystem::path& file);

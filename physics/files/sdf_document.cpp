@@ -154,9 +154,6 @@ SdfElement read_include(Source& source, const XMLElement& from) {
   if (text_in(include, "uri").empty()) source.fail(from, "an <include> needs a <uri>");
   if (const std::string frame = text_in(include, "placement_frame"); !frame.empty() && !child_of(include, "pose"))
     source.fail(from, "a <placement_frame> needs a <pose>");
-  // Merged models differ by the names of their frames.
-  if (from.BoolAttribute("merge"))
-    source.notes.add(source.place(from), "merge is not simulated: the model keeps its own frames and names");
   return include;
 }
 

@@ -241,15 +241,63 @@ TEST_CASE("What an included file does not simulate is noted once, with its own l
   CHECK_THAT(loaded.notes[0], Contains("lamp/model.sdf:3: <light> in <link> is not simulated"));
 }
 
-TEST_CASE("A merged model is one of its own, and said so") {
+namespace {
+
+std::string merged(const std::string& uri, const std::string& more = "") {
+  return "<include merge=\"true\"><uri>" + uri + "</uri>" + more + "</include>\n";
+}
+
+}  // namespace
+
+// The model stands at (1, 0, 0), turned by 90 degrees: what is 1 ahead in it is at (1, 1, 0) outside.
+TEST_CASE("What is in a merged model is part of the model that includes it") {
   const Folder folder;
-  folder.add("outer/model.sdf", model_file(kStatic + "<include merge=\"true\"><uri>block</uri><pose>1 0 0 0 0 0</pose>"
-                                                     "</include>",
-                                           "1.9", "outer"));
-  const Loaded loaded = load(folder, include("outer"));
-  CHECK(is_at(loaded.place(), 1, 0, 0));
-  REQUIRE(loaded.notes.size() == 1);
-  CHECK_THAT(loaded.notes[0], Contains("merge is not simulated"));
+  folder.add("part/model.sdf", model_file(kStatic +
+                                          "<frame name=\"ahead\"><pose>1 0 0 0 0 0</pose></frame>"
+                                          "<frame name=\"up\" attached_to=\"ahead\"><pose>0 0 1 0 0 0</pose></frame>"
+                                          "<frame name=\"own\" attached_to=\"__model__\"/>" +
+                                          box_link(1)));
+  const std::string turned = std::string("<pose>1 0 0 0 0 ") + kQuarterTurn + "</pose>";
+  const auto second = [&](const std::string& relative_to) {
+    folder.add(
+        "outer/model.sdf",
+        model_file(kStatic + merged("part", turned) + "<link name=\"second\"><pose relative_to=\"" + relative_to +
+                       "\"/><collision name=\"c\"><geometry><box><size>2 2 2</size></box></geometry>"
+                       "</collision></link>",
+                   "1.9", "outer"));
+    return load(folder, include("outer"));
+  };
+  const Loaded loaded = second("ahead");
+  REQUIRE(loaded.world.boxes.size() == 2);
+  CHECK(loaded.notes.empty());
+  CHECK(is_at(loaded.place(0), 1, 0, 0));
+  CHECK(is_at(loaded.place(1), 1, 1, 0));
+  CHECK(is_at(second("up").place(1), 1, 1, 1));
+  CHECK(is_at(second("own").place(1), 1, 0, 0));
+  CHECK(is_at(second("_merged__m__model__").place(1), 1, 0, 0));
+}
+
+TEST_CASE("The parts of a merged model are static if the one around them is, and have no name twice") {
+  const Folder folder;
+  folder.add("loose/model.sdf", model_file(merged("block"), "1.9", "outer"));
+  CHECK(load(folder, include("loose")).world.boxes.at(0).mass_kg == 1);
+  folder.add("twice/model.sdf", model_file(kStatic + box_link() + merged("block"), "1.9", "outer"));
+  CHECK_THAT(error_of(folder, include("twice")), Contains("has the name \"l\""));
+}
+
+TEST_CASE("A model that cannot be merged keeps its own frames, and is said so") {
+  const Folder folder;
+  folder.add("top/model.sdf",
+             model_file(kStatic + "<frame name=\"top\"><pose>0 0 1 0 0 0</pose></frame>" + box_link()));
+  folder.add("outer/model.sdf",
+             model_file(kStatic + merged("top", "<pose>1 0 0 0 0 0</pose><placement_frame>top</placement_frame>"),
+                        "1.9", "outer"));
+  for (const std::string& inside : {include("outer"), merged("block")}) {
+    const Loaded loaded = load(folder, inside);
+    CHECK(loaded.world.boxes.size() == 1);
+    REQUIRE(loaded.notes.size() == 1);
+    CHECK_THAT(loaded.notes[0], Contains("merge is simulated only in"));
+  }
 }
 
 // 2 lanes of 3 pallets of 10 x 10 posts; post_3_4 stands out by 0.01 * ((3 * 3 + 5 * 4) % 7) m = 0.01 m, its centre

@@ -88,6 +88,17 @@ TEST_CASE("What stands in for a withheld effect is withheld with it") {
   CHECK(withheld_names(plan) == std::vector<std::string>{"drive.max_force_n"});
 }
 
+TEST_CASE("A pair is of two effects that could be told apart") {
+  CHECK(stand_in_for_each_other("tracking_delay", "clock_offset"));
+  CHECK(stand_in_for_each_other("drive.time_constant_s", "drive_lag"));
+  CHECK_FALSE(stand_in_for_each_other("drive_lag", "command_slew"));
+  CHECK_FALSE(stand_in_for_each_other("drive_lag", "drive_lag"));
+  // the order of turns of this seed would pair the first two
+  for (const CasePlan& plan : imperfect(60, 131))
+    if (plan.stratum == Stratum::pair)
+      CHECK_FALSE(stand_in_for_each_other(plan.effects[0].effect, plan.effects[1].effect));
+}
+
 TEST_CASE("Every name that is withheld is a candidate of the diagnosis") {
   const physics::RobotDescription robot = physics::load_robot(kChallengedRobot);
   std::set<std::string> names;
