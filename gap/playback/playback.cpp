@@ -106,6 +106,12 @@ Playback load_playback(const PlaybackRequest& request) {
   return playback;
 }
 
+std::vector<ReportedPhase> reported_phases_of(const Playback& playback, const ListedRun& run) {
+  std::map<std::string, std::string> world_of;
+  for (const ListedRun& other : playback.runs) world_of[other.entry.file] = std::to_string(other.world);
+  return phases_of_run(*playback.report, run.entry.file, run.entry.manoeuvre, world_of);
+}
+
 PlayedRun prepare_run(const Playback& playback, std::size_t index) {
   const ListedRun& listed = playback.runs.at(index);
   const std::string path = (playback.folder / listed.entry.file).string();
@@ -113,9 +119,7 @@ PlayedRun prepare_run(const Playback& playback, std::size_t index) {
   if (run.row_count() == 0) throw runs::RunFileError(path + ": has no rows");
   PlayedRun played = play_run(listed.entry, run, path, playback.robots, playback.worlds[listed.world], kMostShownTimes);
   if (playback.report) {
-    std::map<std::string, std::string> world_of;
-    for (const ListedRun& other : playback.runs) world_of[other.entry.file] = std::to_string(other.world);
-    played.marks = phases_of_run(*playback.report, listed.entry.file, listed.entry.manoeuvre, world_of);
+    played.marks = reported_phases_of(playback, listed);
     if (played.marks.empty()) played.notes.push_back("The report contains no phases of this run's manoeuvre.");
   }
   return played;

@@ -52,6 +52,9 @@ struct Playback {
 // of other manoeuvres, there is no such run, or it ends before at_s.
 Playback load_playback(const PlaybackRequest& request);
 
+// Returns the report's phases of one of its runs (phases_of_run()). There must be a report.
+std::vector<ReportedPhase> reported_phases_of(const Playback& playback, const ListedRun& run);
+
 // Returns one of its runs, with its simulations. Throws std::exception with words for the user if its file can no
 // longer be read.
 PlayedRun prepare_run(const Playback& playback, std::size_t run);
@@ -69,8 +72,12 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //   first      number of the run to begin with; at_s: when to begin in it, s
 //   robot      {name, and the dimensions of a robot in the live view's `inventory`}
 //   corrected  whether there is a corrected robot
-//   report     {verdict, named: names of effects, largest_share: of a phase of any run, 0 to 1} or null
-//   runs       [{file, manoeuvre, world, rows: in the file, duration_s}]
+//   report     {verdict, named: names of effects, stage: whose gap the shares are of, or empty, largest_share: of a
+//   phase
+//              of any run, 0 to 1} or null
+//   runs       [{file, manoeuvre, world, rows: in the file, duration_s, share: of the gap in all runs, 0 to 1, only
+//   with
+//              a report}]
 //   notes      on all runs, sentences
 //
 // Keys of played_run_json():

@@ -107,6 +107,7 @@ std::string playback_json(const Playback& playback) {
   if (playback.report) {
     out.open('{').key("verdict").text(playback.report->verdict);
     write_texts(out, "named", playback.report->named);
+    out.key("stage").text(playback.report->stage);
     double largest = 0;
     for (const ReportedPhase& phase : playback.report->phases) largest = std::max(largest, phase.share);
     out.key("largest_share").number(largest, kDigits);
@@ -118,7 +119,13 @@ std::string playback_json(const Playback& playback) {
   for (const ListedRun& run : playback.runs) {
     out.comma().open('{').key("file").text(run.entry.file).key("manoeuvre").text(run.entry.manoeuvre);
     out.key("world").text(run.world_name).key("rows").integer(run.rows);
-    out.key("duration_s").number(run.duration_s, kDigits).close('}');
+    out.key("duration_s").number(run.duration_s, kDigits);
+    if (playback.report) {
+      double share = 0;
+      for (const ReportedPhase& phase : reported_phases_of(playback, run)) share += phase.share;
+      out.key("share").number(share, kDigits);
+    }
+    out.close('}');
   }
   out.close(']');
   write_texts(out, "notes", playback.notes);

@@ -49,6 +49,7 @@ ReportedPlaces parse_reported_places(std::string_view report_json) try {
   json.at("verdict").get_to(places.verdict);
   json.at("named").get_to(places.named);
   const PlacesJson& where = json.at("where");
+  if (const auto stage = where.find("stage"); stage != where.end() && stage->is_string()) stage->get_to(places.stage);
   for (const PlacesJson& phase : where.at("phases")) places.phases.push_back(phase_in(phase));
   for (const PlacesJson& channel : where.at("channels"))
     places.channel_share[channel.at("channel")] = share_in(channel.at("share"));

@@ -20,6 +20,7 @@ struct ReportedPhase {
 struct ReportedPlaces {
   std::string verdict;
   std::vector<std::string> named;
+  std::string stage;                            // whose gap the shares are of; empty if the report does not say it
   std::vector<ReportedPhase> phases;            // as the report has them: largest share first
   std::map<std::string, double> channel_share;  // by column
   // By column, in its unit, 1 sigma of a mean over 0.25 s, above 0: of every stage's channels, not of one stage alone.

@@ -84,6 +84,8 @@ std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std
   if (simulation.robot_count() >= kMostRobots) return "there are already 64 robots in the world";
   const physics::RobotDescription* description = robot_to_place(simulation);
   if (description == nullptr) return "there is no description of USARBot.Kenaf";
+  if (where && robot_at(simulation, pose_over(*where, *description), *description) != nullptr)
+    return "another robot stands there";
   Session& session = simulation.connect("an operator");
   session.placed_by_operator = true;
   try {

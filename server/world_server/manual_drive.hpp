@@ -34,8 +34,9 @@ struct GroundPlace {
   Eigen::Vector3d p_W;
   double yaw_rad;
 };
-// Places a robot of the class USARBot.Kenaf level over `where`, lifted until it is free, or else at a free start pose;
-// held by `who`. `session`: its session, if done. `where` must be finite and within 100 km of W's origin.
+// Places a robot of the class USARBot.Kenaf level over `where`, where no robot may stand, lifted until it is free of
+// the ground, or else at a free start pose; held by `who`. `session`: its session, if done. `where` must be finite and
+// within 100 km of W's origin.
 std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& session,
                                      const std::optional<GroundPlace>& where = std::nullopt);
 // `command` is limited to the robot's abilities. Numbers must be finite.

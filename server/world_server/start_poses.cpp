@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/protocol/usarsim_message.hpp"
+#include "server/world_server/footprint.hpp"
 #include "server/world_server/report.hpp"
 
 namespace kenaf::world_server {
@@ -41,6 +42,16 @@ void warn_of_namesakes(Simulation& simulation, Session& session) {
   }
 }
 
+void warn_of_occupant(Simulation& simulation, Session& session, std::uint32_t occupant) {
+  Session* other = simulation.find_session(occupant);
+  if (other == nullptr) return;
+  if (simulation.connection_log.allow(simulation.wall_s)) {
+    spdlog::warn("{}: robot {} is placed where robot {} of {} stands: they push each other apart", session.peer,
+                 session.robot->name, other->robot->name, other->peer);
+  }
+  for (Session* each : {&session, other}) write_warning(simulation, *each, "another robot is in the same place");
+}
+
 }  // namespace
 
 std::vector<physics::StartPose> offered_start_poses(const physics::WorldDescription& world) {
@@ -69,8 +80,19 @@ const physics::StartPose& free_start_pose(const physics::World& world, double cl
   return found == starts.end() ? starts.front() : *found;
 }
 
+const Session* robot_at(const Simulation& simulation, const physics::Pose& X_WB,
+                        const physics::RobotDescription& description) {
+  const Eigen::Vector3d half_m = half_footprint_m(description);
+  const auto found = std::ranges::find_if(simulation.sessions, [&](const auto& other) {
+    return other->robot && footprints_overlap(X_WB, half_m, simulation.world.truth(other->robot->id).X_WB,
+                                              half_footprint_m(*other->robot->description));
+  });
+  return found == simulation.sessions.end() ? nullptr : found->get();
+}
+
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB) {
+  const Session* occupant = robot_at(simulation, X_WB, description);
   SessionRobot robot;
   robot.name = name;
   robot.description = &description;
@@ -81,6 +103,7 @@ void place_robot(Simulation& simulation, Session& session, const physics::RobotD
   simulation.apply_command(session);
   try {
     warn_of_namesakes(simulation, session);
+    if (occupant != nullptr) warn_of_occupant(simulation, session, occupant->id);
   } catch (...) {
     simulation.world.remove_robot(session.robot->id);
     session.robot.reset();

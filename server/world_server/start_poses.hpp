@@ -18,8 +18,13 @@ std::optional<physics::Pose> find_start_pose(const physics::WorldDescription& wo
 // Returns the first start pose at least `clear_m` away from every robot, or the first of all if there is none.
 const physics::StartPose& free_start_pose(const physics::World& world, double clear_m = 1.0);
 
+// Returns a robot whose place one of this description would share, or null.
+const Session* robot_at(const Simulation& simulation, const physics::Pose& X_WB,
+                        const physics::RobotDescription& description);
+
 // Places the session's robot, at rest. If another robot has its name, the log and both clients that have a Session are
-// told: CONTROL and the image server know robots by their names. If it throws, neither the world nor the session has a
+// told: CONTROL and the image server know robots by their names. So they are if another robot stands there: the two
+// push each other apart. If it throws, neither the world nor the session has a
 // new robot.
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB);

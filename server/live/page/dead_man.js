@@ -1,6 +1,6 @@
 // What the operator holds down, by keys, buttons and the stick. Everything is let go of when the window loses the focus or
 // is hidden: nobody drives who does not look. So it is when a list or a menu opens, which keeps to itself that a key came up.
-import { dialogIsOpen, leaveButton, watchFocus } from "./focus.js";
+import { dialogIsOpen, leaveControl, watchFocus } from "./focus.js";
 
 const KEYS = {
   KeyW: "forward", ArrowUp: "forward", KeyS: "back", ArrowDown: "back",
@@ -10,10 +10,14 @@ const KEYS = {
   Digit1: "flat", Digit2: "raised", Digit3: "climb", Digit4: "stand", ShiftLeft: "slowly", ShiftRight: "slowly",
 };
 
+// A list that was opened by mouse or finger and closed without a choice keeps the focus: letters drive on there, and do not look for an
+// entry.
+const drivesOn = (event) => event.target.hasAttribute("data-by-pointer") && event.code in KEYS && !event.code.startsWith("Arrow");
+
 // Whether the element with the focus needs the key for itself.
 export function keyIsTaken(event) {
   if (event.ctrlKey || event.altKey || event.metaKey || dialogIsOpen()) return true;
-  if (event.target instanceof HTMLSelectElement) return event.key !== "Escape";
+  if (event.target instanceof HTMLSelectElement) return event.key !== "Escape" && !drivesOn(event);
   return event.target instanceof HTMLInputElement && event.code.startsWith("Arrow");
 }
 
@@ -46,7 +50,7 @@ export function watchHands(active, changed) {
     if (!name || !active() || keyIsTaken(event)) return;
     if (name !== "slowly") {   // Shift is half of Shift-Tab too
       event.preventDefault();   // arrows scroll
-      leaveButton();
+      leaveControl();
     }
     if (!event.repeat) hold(name, true);
   });
@@ -61,11 +65,11 @@ export function watchHands(active, changed) {
 
   // After a choice by mouse or finger the keys drive again; one by the keyboard goes on in its list.
   for (const select of document.querySelectorAll("select")) {
-    let byPointer = false;
     select.addEventListener("focus", letGo);
-    select.addEventListener("pointerdown", () => { byPointer = true; letGo(); });
-    select.addEventListener("keydown", () => { byPointer = false; });
-    select.addEventListener("change", () => { if (byPointer) select.blur(); });
+    select.addEventListener("pointerdown", () => { select.setAttribute("data-by-pointer", ""); letGo(); });
+    select.addEventListener("keydown", (event) => { if (!drivesOn(event)) select.removeAttribute("data-by-pointer"); });
+    select.addEventListener("change", () => { if (select.hasAttribute("data-by-pointer")) select.blur(); });
+    select.addEventListener("blur", () => select.removeAttribute("data-by-pointer"));
   }
 
   for (const button of document.querySelectorAll("[data-hold]")) {

@@ -106,6 +106,7 @@ export function createDriving(world, link) {
     line.dataset.state = state;
     // Nothing here moves: what cannot be used stays where it is.
     by("take").disabled = !robot || holder !== 0 || !world.you;
+    by("take").title = state === "other" ? text : "";
     by("let-go").disabled = mine === null;
     by("place").disabled = !world.you;
     by("remove").disabled = !world.you || !(robot?.about.placed && (mine || !holder));

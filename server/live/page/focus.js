@@ -11,9 +11,10 @@ export function focusStick() {
   if (!dialogIsOpen()) document.getElementById("stick").focus({ preventScroll: true });
 }
 
-// Before a key drives: takes the focus off a button, which Enter would press.
-export function leaveButton() {
-  if (isButton(document.activeElement) && !document.activeElement.matches("[data-hold]")) focusStick();
+// Before a key drives: takes the focus off a list, and off a button, which Enter would press.
+export function leaveControl() {
+  const focused = document.activeElement;
+  if (focused instanceof HTMLSelectElement || (isButton(focused) && !focused.matches("[data-hold]"))) focusStick();
 }
 
 // `stand()`: called for Space.

@@ -4,6 +4,7 @@ import { whoPaused } from "./drive_state.js";
 
 // Chosen: a person who drives notices 0.2 s (docs/live-view.md); at twice that he drives by what was.
 const SLOW_MS = 400;
+const FAST_AGAIN_MS = 300;   // less than SLOW_MS: a link that is just as slow does not flicker
 const OLD_PICTURE_MS = 1000;
 const NOTICE_MS = 5000;
 const LOOK_MS = 200;
@@ -11,13 +12,13 @@ const LOOK_MS = 200;
 const seconds = (ms) => (ms < 10000 ? (ms / 1000).toFixed(1) : (ms / 1000).toFixed(0));
 
 // All that is wrong with what a person sees and does here, the worst first. Pure.
-export function alarms({ isHeard, newestAge_ms, roundTrip_ms, mine, world, oldestPicture_ms }) {
+export function alarms({ isHeard, newestAge_ms, roundTrip_ms, isSlow, mine, world, oldestPicture_ms }) {
   if (!isHeard) {
     const since = Number.isFinite(newestAge_ms) ? `for ${seconds(newestAge_ms)} s` : "yet";
     return [`No word from the server ${since}: what is shown is old, and nothing you do reaches the robot`];
   }
   const found = [];
-  if (roundTrip_ms >= SLOW_MS) {
+  if (isSlow) {
     found.push(`Slow link: ${seconds(roundTrip_ms)} s there and back. What you see is old, and the robot obeys late`);
   }
   if (world.paused && mine && world.pausedBy?.operator !== world.you) found.push(`Paused by ${whoPaused(world)}: ${mine.about.name} does not move`);
@@ -28,7 +29,7 @@ export function alarms({ isHeard, newestAge_ms, roundTrip_ms, mine, world, oldes
 // `mine()`: the robot that is yours, or null. `oldestPicture_ms()`: of those shown; 0 without.
 export function createLinkHealth(world, link, mine, oldestPicture_ms) {
   const chip = document.getElementById("link"), notice = document.getElementById("notice"), alarm = document.getElementById("alarm");
-  let refused_ms = -Infinity;
+  let refused_ms = -Infinity, isSlow = false;
 
   function inFigures(isHeard) {
     if (!link.open) return "not connected";
@@ -40,7 +41,9 @@ export function createLinkHealth(world, link, mine, oldestPicture_ms) {
 
   function update() {
     const isHeard = link.isHeard();
-    const found = alarms({ isHeard, newestAge_ms: link.newestAge_ms(), roundTrip_ms: link.roundTrip_ms() ?? 0, mine: mine(), world,
+    const roundTrip_ms = link.roundTrip_ms() ?? 0;
+    isSlow = roundTrip_ms >= (isSlow ? FAST_AGAIN_MS : SLOW_MS);
+    const found = alarms({ isHeard, newestAge_ms: link.newestAge_ms(), roundTrip_ms, isSlow, mine: mine(), world,
                            oldestPicture_ms: oldestPicture_ms() });
     const text = inFigures(isHeard), words = link.received_ms === null && !link.open ? "" : found.join("\n");
     if (chip.textContent !== text) chip.textContent = text;

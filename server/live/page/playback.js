@@ -1,25 +1,25 @@
 // Puts the playback's parts together: a run is fetched once, and from then on everything follows the clock.
+import { checkBox, createChannels } from "./playback_channels.js";
 import { createClock } from "./playback_clock.js";
 import { createCurves, differenceInWords, floorsOf, titleOf } from "./playback_curves.js";
-import { fetchList, fetchRun, indexAt, LABELS } from "./playback_data.js";
+import { fetchList, fetchRun, indexAt, LABELS, nominalGapOf } from "./playback_data.js";
 import { createLanes } from "./playback_lanes.js";
 import { makePicture, savePicture } from "./playback_picture.js";
 import { createReadings } from "./playback_readings.js";
 import { createZoom } from "./playback_zoom.js";
 
 const by = (id) => document.getElementById(id);
-const WITHOUT_GAP = ["x_m", "pitch_rad", "track_left_mps"], MOST_AT_FIRST = 3;
 
 const hidden = new Set();                  // kinds of bodies, "paths"
 const shown = (kind) => !hidden.has(kind);
 let list = null, run = null, number = -1, view = null, pointed_s = null;
-let channels = [], chosenByHand = null;   // columns, once somebody has chosen
 
 const clock = createClock(update);
 const zoom = createZoom(() => lanes.draw());
 const lanes = createLanes(clock, zoom, drawCurves, (t) => { pointed_s = t; readCurves(); });
 const curves = createCurves(lanes.xOf, zoom);
 const readings = createReadings();
+const channels = createChannels(drawCurves);
 
 function complain(text) {
   by("notice").textContent = text;
@@ -37,7 +37,7 @@ function update() {
 
 function drawCurves() {
   if (!run) return;
-  curves.draw(run, channels, shown);
+  curves.draw(run, channels.shown(), shown);
   readCurves();
 }
 
@@ -53,15 +53,6 @@ function step(by_samples) {
   const from = by_samples < 0 && clock.t > run.t_s[i] + 1e-9 ? i + 1 : i;
   clock.play(false);
   clock.set(run.t_s[Math.max(0, Math.min(run.t_s.length - 1, from + by_samples))]);
-}
-
-function checkBox(text, checked, changed) {
-  const label = document.createElement("label"), box = document.createElement("input");
-  box.type = "checkbox";
-  box.checked = checked;
-  box.addEventListener("change", () => changed(box.checked));
-  label.append(box, text);
-  return label;
 }
 
 function makeLegend() {
@@ -84,58 +75,35 @@ function makeLegend() {
   by("legend").replaceChildren(by("legend").firstElementChild, ...bodies, entry("paths", "Paths on the floor"));
 }
 
-const nominalGap = () => run.gaps.find((gap) => gap.kind === "nominal");
-
-// Of left and right, or of four flippers, only the one with most of the gap.
-const familyOf = (column) => column.replace(/_(left|right|fl|fr|rl|rr)_/, "_");
-
-// Curves in the order of this run's own gap, largest first; at first those at the top.
-function chooseChannels() {
-  const floors = nominalGap()?.floors ?? {}, of = (channel) => floors[channel.column] ?? -1;
-  const sorted = [...run.channels].sort((a, b) => of(b) - of(a));
-  const families = new Set(), isFirst = (channel) => !families.has(familyOf(channel.column)) && families.add(familyOf(channel.column));
-  const largest = sorted.filter((channel) => of(channel) > 0 && isFirst(channel)).map((channel) => channel.column);
-  const wanted = chosenByHand ?? (largest.length ? largest : WITHOUT_GAP).slice(0, MOST_AT_FIRST);
-  const choose = (columns) => { channels = sorted.filter((channel) => columns.includes(channel.column)); };
-  choose(wanted);
-  by("channel-list").replaceChildren(...sorted.map((channel) => {
-    const title = of(channel) < 0 ? titleOf(channel.column) : `${titleOf(channel.column)}, ${floorsOf(of(channel))}`;
-    const box = checkBox(title, wanted.includes(channel.column), (on) => {
-      const others = channels.map(({ column }) => column).filter((column) => column !== channel.column);
-      choose(chosenByHand = on ? [...others, channel.column] : others);
-      drawCurves();
-    });
-    box.lastChild.before(" ");
-    return box;
-  }));
-}
-
 // The words for the worst moment of the nominal simulation.
 function worstInWords() {
-  const { worst } = nominalGap() ?? {};
+  const gap = nominalGapOf(run), worst = gap?.worst;
   if (!worst) return "";
-  const channel = run.channels.find(({ column }) => column === worst.column);
-  return `Worst at ${worst.t_s.toFixed(2)} s: ${titleOf(worst.column)} of the nominal simulation ${differenceInWords(worst.difference, channel)} off, ` +
-    `${floorsOf(worst.difference_floors)}; all channels ${floorsOf(worst.floors)} rms`;
+  const channel = run.channels.find(({ column }) => column === worst.column), off = differenceInWords(worst.difference, channel);
+  return `Worst at ${worst.t_s.toFixed(2)} s: the nominal simulation is ${floorsOf(worst.floors)} off, rms of all channels; most in ` +
+    `${titleOf(worst.column)}, ${off} in the mean of ${gap.span_s} s, ${floorsOf(worst.difference_floors)} (one: what noise alone does)`;
 }
 
 function toWorst() {
-  const { worst } = nominalGap() ?? {};
+  const worst = nominalGapOf(run)?.worst;
   if (!worst) return;
+  channels.include(worst.column);
   clock.play(false);
   clock.set(worst.t_s);
 }
 
 function takePicture() {
   const factor = Number(by("exaggerate").value), at = `${run.manoeuvre}, ${run.file}, at ${clock.t.toFixed(2)} s`;
-  const { worst } = nominalGap() ?? {}, isWorst = worst && Math.abs(worst.t_s - clock.t) < 0.005;
+  const worst = nominalGapOf(run)?.worst, isWorst = worst && Math.abs(worst.t_s - clock.t) < 0.005;
   const differences = [...by("difference").querySelectorAll("tbody tr")].map(({ cells: [title, ...values] }) => {
     const [name, unit] = title.textContent.split(", ");
     return `${name} ${values.map((cell) => cell.textContent).join(" and ")} ${unit}`;
   }).join(", ");
   const kinds = [...by("difference").querySelectorAll("thead th")].map((head) => head.textContent).filter(Boolean).join(" and ");
   curves.read(clock.t);
-  return savePicture(makePicture(view?.picture() ?? null, curves.parts(), [
+  const bodies = run.bodies.filter(({ kind }) => shown(kind)).map(({ kind }) => ({ kind, text: LABELS[kind](list.source) }));
+  const time = { from_s: zoom.from, to_s: zoom.to, t_s: clock.t, xOf: lanes.xOf };
+  return savePicture(makePicture(view?.picture() ?? null, { parts: curves.parts(), bodies, time }, [
     `${list.name}: ${at}${isWorst ? ". " + worstInWords() : ""}`,
     kinds && `Simulated minus recorded, ${kinds}: ${differences}`,
     view && factor > 1 && deviationInWords(factor),
@@ -164,7 +132,7 @@ async function load(next) {
   complain("");
   run = loaded;
   makeLegend();
-  chooseChannels();
+  channels.load(run);
   readings.load(run);
   by("notes").replaceChildren(...[...list.notes, ...run.notes].map((text) => {
     const item = document.createElement("li");
@@ -172,7 +140,7 @@ async function load(next) {
     return item;
   }));
   by("worst-words").textContent = worstInWords();
-  by("worst").disabled = !nominalGap()?.worst;
+  by("worst").disabled = !nominalGapOf(run)?.worst;
   by("exaggerate").disabled = !run.bodies[0].pose || run.bodies.length < 2;
   const end_s = run.t_s[run.t_s.length - 1];
   zoom.load(end_s);
@@ -181,6 +149,9 @@ async function load(next) {
   clock.load(end_s, next === list.first ? list.at_s : 0);
   lanes.draw();
 }
+
+// A button that was clicked gives the focus back: Space plays then.
+addEventListener("click", (event) => { if (event.detail > 0) event.target.closest?.("button")?.blur(); });
 
 // Space belongs to a button that has the focus, arrows to a list.
 function keyIsTaken(event) {
@@ -214,14 +185,18 @@ function tellVerdict() {
   if (!list.report) return;
   const { verdict, named } = list.report;
   by("verdict").textContent = named.length ? `${verdict}: ${named.join(", ")}` : `verdict: ${verdict}`;
+  by("verdict").title = "The report's verdict, and the effects that it names";
   by("verdict").hidden = false;
 }
+
+const runInWords = ({ manoeuvre, file, duration_s, share }) => [manoeuvre, file, `${duration_s.toFixed(1)} s`,
+  ...(share === undefined ? [] : [`${Math.round(100 * share)} % of the gap`])].join(" \u00b7 ");
 
 fetchList().then(async (answer) => {
   list = answer;
   document.title = `Kenaf: ${list.name}`;
   tellVerdict();
-  by("run").replaceChildren(...list.runs.map((about, i) => new Option(`${about.manoeuvre} \u00b7 ${about.file} \u00b7 ${about.duration_s.toFixed(1)} s`, i)));
+  by("run").replaceChildren(...list.runs.map((about, i) => new Option(runInWords(about), i)));
   // curves and figures work without it, where a browser has no WebGL
   const loading = load(list.first);
   await import("./playback_view.js").then(({ createPlaybackView }) => {

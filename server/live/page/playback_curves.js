@@ -210,10 +210,10 @@ export function createCurves(xOf, zoom) {
       readings.replaceChildren(...(lines ?? []).map(({ kind, values }) => {
         const value = values[i] ?? null, off = differences.find((each) => each.kind === kind), digits = digitsOf(floor);
         let text = value === null ? "\u2013" : fixed(value, digits);
-        const difference = off?.values[i] ?? null, mean = off?.means[Math.floor(t / off.span_s + 1e-9)] ?? null;
-        if (difference !== null) text += ` (${signed(fixed(difference, digits))}${mean === null ? "" : `, ${floorsOf(Math.abs(mean) / floor)}`})`;
+        const mean = off?.means[Math.floor(t / off.span_s + 1e-9)] ?? null;
+        if (mean !== null) text += ` (mean ${signed(fixed(mean, digits))}, ${floorsOf(Math.abs(mean) / floor)})`;
         const reading = span("reading", text, kind);
-        reading.title = kind === "command" ? "command" : off ? `${kind}: value (minus recorded, its mean over ${off.span_s} s in floors)` : kind;
+        reading.title = kind === "command" ? "command" : off ? `${kind}: value (minus recorded, mean over ${off.span_s} s, and that in floors)` : kind;
         reading.prepend(span("swatch", "", kind));
         return reading;
       }));

@@ -27,6 +27,9 @@ export async function fetchRun(number, wanted) {
   }
 }
 
+// What the nominal simulation of a run differs by, or nothing.
+export const nominalGapOf = (run) => run?.gaps.find((gap) => gap.kind === "nominal");
+
 // The last index whose time is not after t.
 export function indexAt(times, t) {
   let low = 0, high = times.length - 1;

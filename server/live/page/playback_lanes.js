@@ -20,7 +20,7 @@ export function createLanes(clock, zoom, drawn, hovered) {
   const lanes = by("lanes"), ruler = by("ruler"), cursor = by("cursor"), hover = by("hover"), about = by("about-mark");
   let run = null, report = null, spans = [], dragging = false;
 
-  const usual = () => (run?.marks.length ? "Darker: a larger part of the gap between the robot and its nominal simulation." : "");
+  const usual = () => (run?.marks.length ? `Darker: in the report, a larger part of the gap${report?.stage ? ` from ${report.stage}` : ""} between the robot and its nominal simulation.` : "");
   const end = () => run.t_s[run.t_s.length - 1] || 1;
   const width = () => Math.max(1, lanes.clientWidth - LEFT_PX - RIGHT_PX);
   const xOf = (t) => LEFT_PX + (t - zoom.from) / (zoom.to - zoom.from) * width();

@@ -185,6 +185,7 @@ TEST_CASE("A report's phases belong to their run, or to its one repeat that the 
   CHECK(places.named == std::vector<std::string>{"drive_lag"});
   CHECK(places.channel_share.at("x_m") == 0.7);
   CHECK(places.channel_share.at("z_m") == 0);
+  CHECK(places.stage.empty());
   const std::map<std::string, std::string> one_world{{"a.csv", "flat"}, {"b.csv", "flat"}};
   CHECK(phases_of_run(places, "a.csv", "go", one_world).size() == 2);
   CHECK(phases_of_run(places, "b.csv", "go", one_world).at(0).run == "a.csv");  // its repeat
@@ -204,9 +205,11 @@ TEST_CASE("A report's phases belong to their run, or to its one repeat that the 
 TEST_CASE("Floors are the report's, else the dataset's noise, else the least that counts") {
   const ReportedPlaces places =
       parse_reported_places(R"({"format": "kenaf-gap-report/2", "verdict": "none", "named": [],
-    "where": {"channels": [{"channel": "x_m", "share": 0.7, "floor": 0.004}, {"channel": "y_m", "share": 0, "floor": null},
+    "where": {"stage": "drive to body",
+              "channels": [{"channel": "x_m", "share": 0.7, "floor": 0.004}, {"channel": "y_m", "share": 0, "floor": null},
                            {"channel": "z_m", "share": 0, "floor": 0}], "phases": []},
     "stages": [{"where": {"channels": [{"channel": "track_left_mps", "share": 1, "floor": 0.02}], "phases": []}}]})");
+  CHECK(places.stage == "drive to body");
   const std::map<std::string, double> noise{{"x_m", 0.1}, {"y_m", 0.003}, {"z_m", 1e-9}};
   const auto floors = floors_of(noise, &places);
   CHECK(floors.at("x_m").value == 0.004);
@@ -262,8 +265,12 @@ TEST_CASE("A page is told a run's poses, times and marks as they were recorded")
   const json list = json::parse(playback_json(playback));
   CHECK(list["format"] == "kenaf-playback/1");
   CHECK(list["runs"].size() == 3);
-  CHECK(list["runs"][1] ==
-        json{{"file", "b.csv"}, {"manoeuvre", "go"}, {"world", "flat"}, {"rows", 200}, {"duration_s", 1.99}});
+  CHECK(list["runs"][1] == json{{"file", "b.csv"},
+                                {"manoeuvre", "go"},
+                                {"world", "flat"},
+                                {"rows", 200},
+                                {"duration_s", 1.99},
+                                {"share", 1.0}});
   CHECK(list["report"]["named"][0] == "drive_lag");
   CHECK(list["report"]["largest_share"] == 0.75);
   CHECK(list["at_s"] == 0);

@@ -166,6 +166,7 @@ TEST_CASE("In a browser: the question mark opens the list of keys and closes it"
   desk.browser.key("Slash", true, "?");
   desk.browser.key("Slash", false, "?");
   desk.browser.wait_for("document.getElementById('help').open");
+  CHECK(desk.browser.evaluate("document.getElementById('help').scrollTop") == 0);
   desk.browser.key("KeyW", true);
   CHECK(desk.state_now() == "held");
   desk.browser.key("KeyW", false);

@@ -65,6 +65,18 @@ TEST_CASE("In a browser: a list gives the keyboard back after a choice by mouse,
   };
   CHECK(keeps_focus_after("PointerEvent('pointerdown')") == false);
   CHECK(keeps_focus_after("KeyboardEvent('keydown', { key: 'ArrowDown', code: 'ArrowDown' })") == true);
+  // closed without a choice it keeps the focus, and letters drive; opened by the keyboard it looks for an entry
+  const auto drives_from_list = [&](const std::string& pointer) {
+    desk.browser.evaluate("(() => { const list = document.getElementById('speed'); list.blur(); list.focus(); " +
+                          pointer + " })()");
+    desk.browser.key("KeyW", true);
+    const bool drives = desk.state_now() == "driving";
+    desk.browser.key("KeyW", false);
+    return drives;
+  };
+  CHECK(drives_from_list("list.dispatchEvent(new PointerEvent('pointerdown'));"));
+  CHECK(desk.browser.evaluate("document.activeElement.id") == "stick");
+  CHECK_FALSE(drives_from_list(""));
   desk.browser.key("Escape", true);
   desk.browser.key("Escape", false);
   desk.state_is("none");

@@ -165,7 +165,7 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
 
   // the button leads to the worst moment, and the words say how large it is: at both ends of the drive the lag is all
   const std::string worst = text("worst-words");
-  CHECK_THAT(worst, Catch::StartsWith("Worst at ") && Catch::Contains(" off, ") && Catch::Contains("floors rms"));
+  CHECK_THAT(worst, Catch::StartsWith("Worst at ") && Catch::Contains("floors off, rms of all channels; most in "));
   desk.press("End");
   browser.evaluate("document.getElementById('worst').click()");
   CHECK(worst.find(
@@ -229,6 +229,39 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
           "0], 0.1, 0.2), at([1.02, 2, 0.01], 0.2, 0.1), 10); return [...far.p, 2 * Math.atan2(far.q[3], far.q[0]), "
           "far.flipper[0]].map((v) => Number(v.toFixed(6))); })") == nlohmann::json{1.2, 2, 0.1, 1.1, -0.8});
   browser.screenshot(desk.pictures / "playback-exaggerated.png");
+
+  // the curve of what is worst is among those that are shown, and its mean there is the one of the words
+  const auto worst_title =
+      worst.substr(worst.find("most in ") + 8, worst.find(", ", worst.find("most in ")) - worst.find("most in ") - 8);
+  CHECK_THAT(shown().dump(), Catch::Contains(worst_title));
+  CHECK_THAT(text("curves"),
+             Catch::Contains("mean " + worst.substr(worst.find(worst_title + ", ") + worst_title.size() + 2, 6)));
+
+  // after a click Space plays, and presses the button no more
+  browser.click("#worst");
+  desk.press("Space");
+  browser.wait_for("document.getElementById('play').textContent === 'Pause'");
+  desk.press("Space");
+
+  // the list of curves lies on the screen; Esc closes it, and a press beside it
+  const auto list_is_open = [&] { return browser.evaluate("document.getElementById('channels').open") == true; };
+  browser.click("#channels summary");
+  browser.wait_for("document.getElementById('channel-list').style.maxHeight");
+  CHECK(browser.evaluate(
+            "(() => { const { top, bottom } = document.getElementById('channel-list').getBoundingClientRect();"
+            " return top >= 0 && bottom <= innerHeight; })()") == true);
+  desk.press("Escape");
+  CHECK_FALSE(list_is_open());
+  browser.click("#channels summary");
+  CHECK(list_is_open());
+  browser.click("h1");
+  CHECK_FALSE(list_is_open());
+
+  // the cursor goes through all curves, also those that one scrolls to; the list of runs tells where the gap is
+  browser.evaluate("for (const box of document.querySelectorAll('#channel-list input:not(:checked)')) box.click()");
+  CHECK(browser.evaluate("document.getElementById('cursor').getBoundingClientRect().bottom >= "
+                         "document.getElementById('curves').getBoundingClientRect().bottom - 1") == true);
+  CHECK_THAT(text("run"), Catch::Contains("80 % of the gap") && Catch::Contains("20 % of the gap"));
 
   // the picture has the 3D view above the words and the curves
   browser.evaluate(

@@ -120,8 +120,25 @@ TEST_CASE("Two robots of one name are both told of, in the log and to clients th
   for (const std::string& line : talk.lines(plain)) CHECK_FALSE(line.starts_with("RES"));
 
   Session& third = talk.simulation.connect("third");
-  talk.send(third, "INIT {ClassName USARBot.P3AT} {Name R2}\r\nCONTROL {Type Session} {Period 0.01}\r\n");
+  talk.send(third,
+            "INIT {ClassName USARBot.P3AT} {Name R2} {Location 3,3,0}\r\nCONTROL {Type Session} {Period 0.01}\r\n");
   CHECK_FALSE(log.has("robot R2 has"));
+}
+
+TEST_CASE("Two robots in one place are both told of, and two side by side are not") {
+  Conversation talk;
+  talk.send("CONTROL {Type Session} {Period 0.01}\r\n" + init("P3AT", "{Location 4,0,0}"));
+  talk.lines();
+  const WholeLog log;
+  const std::string warning = "{Type Robot} {Name R1} {Status OK} {Warning another robot is in the same place}";
+  Session& beside = talk.simulation.connect("beside");
+  talk.send(beside, "INIT {ClassName USARBot.P3AT} {Name R2} {Location 4,1,0}\r\n");
+  CHECK_FALSE(log.has("stands: they push"));
+  Session& upon = talk.simulation.connect("upon");
+  talk.send(upon, "INIT {ClassName USARBot.P3AT} {Name R3} {Location 4.1,0.1,0}\r\n");
+  REQUIRE(upon.robot);
+  CHECK(log.has("upon: robot R3 is placed where robot R1 of test stands"));
+  CHECK(talk.last("RES").ends_with(warning));
 }
 
 }  // namespace kenaf::world_server

@@ -233,6 +233,25 @@ TEST_CASE("A robot is placed where an operator says, turned, and on top of what 
   CHECK((pose(on_box).p - Eigen::Vector3d(2, 0, 0.39)).norm() < 2e-3);
 }
 
+TEST_CASE("A robot is placed beside another one, and not upon it") {
+  // share/robots/kenaf.toml: 0.58 m from end to end of the tracks, 0.29 m from side to side
+  Conversation talk;
+  talk.simulation.wall_s = talk.wall_s;
+  std::uint32_t robot = 0;
+  const auto placed = [&](double x_m, double y_m, double yaw_rad = 0) {
+    return place_robot_by_hand(talk.simulation, kAnna, robot, GroundPlace{{x_m, y_m, 0}, yaw_rad});
+  };
+  REQUIRE(placed(0, 0).empty());
+  CHECK(placed(0, 0) == "another robot stands there");
+  CHECK(placed(0.3, 0.1) == "another robot stands there");
+  CHECK(talk.simulation.robot_count() == 1);
+  CHECK(placed(0, 0.6).empty());
+  CHECK(placed(0.7, 0).empty());
+  // 0.35 m beside it there is room, but not for one that stands across: 0.145 + 0.29 m
+  CHECK(placed(0, -0.35, std::acos(-1) / 2) == "another robot stands there");
+  CHECK(placed(0, -0.35).empty());
+}
+
 TEST_CASE("A client's robot cannot be removed, and one that left cannot be driven") {
   Desk desk;
   CHECK_FALSE(remove_placed_robot(desk.simulation, desk.robot, kAnna).empty());
