@@ -43,6 +43,7 @@ void check_all_sizes(Desk& desk, const std::string& name) {
       CHECK(desk.browser.evaluate("pale()") == none);
       CHECK(desk.browser.evaluate("nameless()") == none);
       CHECK(desk.browser.evaluate("small()") == none);
+      CHECK(desk.browser.evaluate("underAlarm()") == none);
       CHECK(desk.browser.evaluate(kHandIsOnScreen) == true);
       desk.browser.screenshot(desk.pictures / (name + "-" + std::to_string(width) + "x" + std::to_string(height) +
                                                (dark ? "-dark.png" : "-light.png")));

@@ -3,6 +3,7 @@
 // overlaps(): elements with text, controls and pictures that cover each other, leave their section or the page, or are cut off. Of what is
 // in a list that scrolls the part that shows counts.
 // pale(): text whose contrast with what is behind it is below 4.5 : 1 (WCAG 2.2, 1.4.3, with its formula of relative luminance).
+// underAlarm(): the tools and labels that an alarm would lie over.
 // nameless(): controls without a name. small(): those smaller than 24 x 24 CSS pixels (2.5.8).
 (() => {
   const seen = (e) => e.checkVisibility({ visibilityProperty: true, opacityProperty: true }) && e.getClientRects().length > 0;
@@ -100,4 +101,15 @@
   const controls = () => [...document.querySelectorAll("button, select, input, [tabindex]")].filter(seen);
   window.nameless = () => controls().filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).map(name);
   window.small = () => controls().filter((e) => !e.matches("input") && (e.getBoundingClientRect().width < 24 || e.getBoundingClientRect().height < 24)).map(name);
+
+  window.underAlarm = () => {
+    const alarm = document.getElementById("alarm"), before = [alarm.textContent, alarm.hidden];
+    alarm.textContent = "Slow link: 0.5 s there and back. What you see is old, and the robot obeys late";
+    alarm.hidden = false;
+    const a = alarm.getBoundingClientRect();
+    const needed = [...document.querySelectorAll("#scene-tools button, #scene-tools p, #view-tools button, figcaption, header button, #driving button")];
+    const under = needed.filter(seen).filter((e) => { const b = box(e); return b.left < a.right && a.left < b.right && b.top < a.bottom && a.top < b.bottom; });
+    [alarm.textContent, alarm.hidden] = before;
+    return under.map(name);
+  };
 })()
