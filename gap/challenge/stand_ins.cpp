@@ -18,6 +18,9 @@ constexpr StandIn kStandIns[] = {
     // in a log, a pose reported late cannot be distinguished from a clock that is behind
     {"tracking_delay", "clock_offset"},
     {"clock_offset", "tracking_delay"},
+    // both sides' friction is that of either side, added
+    {"drive_coulomb", "drive_coulomb_left"},
+    {"drive_coulomb", "drive_coulomb_right"},
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
-// The names that a diagnosis must lack, too, if a challenge withholds an effect: those of candidates so similar that no
-// runs tell them apart. Candidates that are exactly the same the diagnosis leaves out by itself (Candidate::same_as).
-// Used by the challenge only: a diagnosis with both reports that it cannot tell them apart.
+// The names that a diagnosis must lack, too, if a challenge withholds an effect: those of candidates so similar, alone
+// or together, that no runs tell them apart. Candidates that are exactly the same the diagnosis leaves out by itself
+// (Candidate::same_as). Used by the challenge only: a diagnosis with both reports that it cannot tell them apart.
 //
 // Thread safety: pure functions.
 #pragma once

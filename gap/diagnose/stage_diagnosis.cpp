@@ -175,6 +175,16 @@ void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision
   if (rivals.size() > 1) decision.verdict = Verdict::ambiguous;
 }
 
+// What the model explains where it is simulated in held-out runs; in held-out manoeuvres as well if the others show all
+// its effects.
+double simulated_share(const StageDiagnosis& stage, const DecisionSettings& settings) {
+  const bool shown_by_others = std::ranges::all_of(stage.decision.effects, [&](const ModelEffect& effect) {
+    return effect.share_by_manoeuvre.shown_by_others >= settings.evidence;
+  });
+  const double of_runs = stage.gap.explains.value, of_manoeuvres = stage.gap_by_manoeuvre.explains.value;
+  return shown_by_others ? std::min(of_runs, of_manoeuvres) : of_runs;
+}
+
 // A significant but invisibly small difference without a name is no gap.
 void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings) {
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
@@ -245,7 +255,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, kept));
     if (places_with_name(alone.decision).size() >= names) stage = std::move(alone);
   }
-  doubt_unless_simulated(stage.decision, stage.gap.explains.value, options.decision);
+  doubt_unless_simulated(stage.decision, simulated_share(stage, options.decision), options.decision);
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 

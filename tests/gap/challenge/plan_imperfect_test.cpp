@@ -78,6 +78,8 @@ TEST_CASE("What stands in for a withheld effect is withheld with it") {
   CHECK(withheld_names(plan) == std::vector<std::string>{"drive_lag", "drive.time_constant_s"});
   plan.effects = {{"tracking_delay", "delay_s"}};
   CHECK(withheld_names(plan) == std::vector<std::string>{"tracking_delay", "clock_offset"});
+  plan.effects = {{"drive_coulomb", "force_n"}};
+  CHECK(withheld_names(plan) == std::vector<std::string>{"drive_coulomb", "drive_coulomb_left", "drive_coulomb_right"});
   plan.effects = {{"mass", "scale"}};  // the diagnosis itself leaves out body.mass_kg then
   CHECK(withheld_names(plan) == std::vector<std::string>{"mass"});
   plan.stratum = Stratum::single;
