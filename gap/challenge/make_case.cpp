@@ -30,9 +30,11 @@ constexpr double kCloseToPlanned = 0.9;
 // A size that is nearly the same at a quarter of the value is not the effect's, but that of a run which any change
 // sends another way.
 constexpr double kQuarter = 0.25, kNearlyTheSame = 0.75;
+// Nor is one that jumps at so small a share of the range.
+constexpr double kHardlyAnything = 0.01, kJump = 2;
 
 // Searches the share of the way at which `size_at` is `wanted`, or up to kCloseEnough times that, and returns it with
-// the size there; the whole way if the size is not reached, and 0 for a size that does not grow with the share. Works
+// the size there; the whole way if the size is not reached, and 0 for a size that is not the effect's. Works
 // with ratios, since a thousandth of an effect's range may be visible.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
@@ -54,7 +56,8 @@ std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt
       above = next, size = at_next;
   }
   const bool grows = kQuarter * above < smallest_share || size_at(kQuarter * above) < kNearlyTheSame * size;
-  return {above, grows ? size : 0};
+  const bool jumps = above < kHardlyAnything && above < kNarrow * below && size > kJump * size_below;
+  return {above, grows && !jumps ? size : 0};
 }
 
 struct Sized {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
@@ -9,8 +10,9 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// An effect should explain a kind of channels where its shift is at least this share of the gap (chosen).
-constexpr double kShouldExplain = 0.5;
+// An effect should explain a kind of channels where its shift is at least this share of the gap, rms, and at least this
+// part of its whole squared shift in noise units (chosen): what else happens in the others says nothing of it.
+constexpr double kShouldExplain = 0.5, kOfShift = 0.05;
 // Residuals below this multiple of the noise are not coherent enough to blame an effect for (chosen): noise with a
 // memory is not independent in neighbouring bins.
 constexpr double kOfNoise = 2;
@@ -59,7 +61,9 @@ std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& s
     squares_of_own.push_back(squares_of_kinds(data, own.back()));
   }
   const auto should_explain = [&](std::size_t effect, std::size_t kind) {
-    return squares_of_own[effect][kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind];
+    const std::vector<double>& squares = squares_of_own[effect];
+    return squares[kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind] &&
+           squares[kind] >= kOfShift * std::reduce(squares.begin(), squares.end());
   };
 
   // what is left, beside that shift

@@ -14,7 +14,8 @@ namespace kenaf::gap::diagnose {
 
 struct FitByKind {
   // The residual's coherent part over the effect's shift, both rms: the sine of the angle between the gap and the
-  // effect, if nothing else acts. The largest of the kinds of channels that the effect should explain.
+  // effect, if nothing else acts. The largest of the kinds of channels that the effect should explain:
+  // those in which its shift is a large part of the gap, and no small part of the whole shift.
   double left = 0;
   std::size_t left_in = 0;  // of kind_name()
   // Likewise, the largest difference from the common value of a value fitted to one kind alone that the data bear out.

@@ -77,6 +77,19 @@ TEST_CASE("An effect is not blamed for a kind of channels in which it is a small
   CHECK(fit_of(position(50) + yaw(20) + trembling_yaw(300)).apart_in == kind("x_m"));
 }
 
+TEST_CASE("An effect is not blamed for a kind of channels in which it hardly acts") {
+  // of its squared shift 400 / 10400 = 4 % is in the yaw, where as much trembles as it turns; 900 / 10900 = 8 % are
+  // more
+  const auto fit_with_yaw = [](double length) {
+    const StageData data = world().data(position(100) + yaw(length) + trembling_yaw(length));
+    StandingModel standing = world().fitted({position(100) + yaw(length)}, data, {0});
+    standing.model = fit_values(data, standing.curves, std::vector<std::size_t>{0}, {}, no_discrepancy());
+    return fit_by_kind(data, standing, rest_of(data, standing.model), kBorneOut).front();
+  };
+  CHECK(fit_with_yaw(20).left == 0);
+  CHECK(fit_with_yaw(30).left == Approx(std::sqrt(30.0 * 30.0 - 4 * kBinsOfKind) / 30));
+}
+
 TEST_CASE("Values of kinds that the data do not bear out are not apart") {
   // each kind wants a value 0.02 from the common one: 2 sigma, that is 4 of deviance for the needed 9
   CHECK(fit_of(position(52) + yaw(48)).apart == 0);
