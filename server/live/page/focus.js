@@ -32,11 +32,8 @@ export function watchFocus(stand) {
   addEventListener("keyup", (event) => { if (isSpace(event)) event.preventDefault(); }, { capture: true });
   addEventListener("click", (event) => {
     const button = event.target instanceof Element ? event.target.closest("button") : null;
-    if (!isButton(button)) return;
-    if (event.detail > 1 && button.matches("[data-once]")) {   // the second press of a double click
-      event.stopPropagation();
-      return;
-    }
-    if (event.detail > 0) button.blur();
+    if (!isButton(button) || event.detail === 0) return;   // 0: by the keyboard
+    button.blur();
+    if (event.detail > 1 && button.matches("[data-once]")) event.stopPropagation();   // the second press of a double click
   }, { capture: true });
 }
