@@ -34,8 +34,8 @@ constexpr double kQuarter = 0.25, kNearlyTheSame = 0.75;
 constexpr double kHardlyAnything = 0.01, kJump = 2;
 
 // Searches the share of the way at which `size_at` is `wanted`, or up to kCloseEnough times that, and returns it with
-// the size there; the whole way if the size is not reached, and 0 for a size that is not the effect's. Works
-// with ratios, since a thousandth of an effect's range may be visible.
+// the size there; the whole way if the size is not reached, and 0 for a size that is not the effect's. Works with
+// ratios, since a thousandth of an effect's range may be visible.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);

@@ -72,12 +72,10 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //   first      number of the run to begin with; at_s: when to begin in it, s
 //   robot      {name, and the dimensions of a robot in the live view's `inventory`}
 //   corrected  whether there is a corrected robot
-//   report     {verdict, named: names of effects, stage: whose gap the shares are of, or empty, largest_share: of a
-//   phase
-//              of any run, 0 to 1} or null
-//   runs       [{file, manoeuvre, world, rows: in the file, duration_s, share: of the gap in all runs, 0 to 1, only
-//   with
-//              a report}]
+//   report     {verdict, named: names of effects, stage: whose gap the shares are of, or empty,
+//              largest_share: of a phase of any run, 0 to 1} or null
+//   runs       [{file, manoeuvre, world, rows: in the file, duration_s,
+//              share: of the gap in all runs, 0 to 1, only with a report}]
 //   notes      on all runs, sentences
 //
 // Keys of played_run_json():

@@ -24,10 +24,9 @@ class SdfAssembly {
   SdfAssembly(WorldFiles& files, SdfNotes& notes) : files_(files), notes_(notes) {}
 
   // Replaces each <include> in a <world> by its model, or by what is in it (sdf_merge.hpp): named, placed and made
-  // static as the <include> says
-  // (http://sdformat.org/tutorials?tut=composition). One that is not found, not local or holds no model is noted and
-  // left out. Throws DescriptionError ("file:line: what") for files as WorldFiles and sdf_document.hpp do, if a file
-  // includes itself (with the chain of files), and beyond the limits.
+  // static as the <include> says (http://sdformat.org/tutorials?tut=composition). One that is not found, not local or
+  // holds no model is noted and left out. Throws DescriptionError ("file:line: what") for files as WorldFiles and
+  // sdf_document.hpp do, if a file includes itself (with the chain of files), and beyond the limits.
   SdfElement assemble(SdfElement world);
 
  private:
