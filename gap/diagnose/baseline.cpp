@@ -4,9 +4,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
-#include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "formats/runs/run_file.hpp"
@@ -17,6 +18,7 @@ namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // A stage of two runs can be compared only if both are replays of the same kind.
@@ -80,6 +82,70 @@ StageFeatures less_baseline(const StageFeatures& stage, const BaselineBins& base
   result.baseline_runs = vector_of(runs);
   result.baseline_simulated = vector_of(simulated);
   return result;
+}
+
+VectorXd counts_of(const std::vector<Bin>& bins) {
+  VectorXd counts(std::ssize(bins));
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    counts[static_cast<Index>(b)] = diagnosis_channels()[bins[b].channel].resolution;
+  return counts;
+}
+
+// Each bin's change since the channel's bin before it; of its first bin, the value.
+MatrixXd changes_of(const std::vector<Bin>& bins, const MatrixXd& values) {
+  MatrixXd changes = values;
+  for (std::size_t b = 1; b < bins.size(); ++b)
+    if (bins[b].channel == bins[b - 1].channel)
+      changes.row(static_cast<Index>(b)) -= values.row(static_cast<Index>(b) - 1);
+  return changes;
+}
+
+// The channels that nothing on flat ground brings back.
+constexpr std::array<std::string_view, 3> kCanStayOff{"x_m", "y_m", "yaw_rad"};
+
+Eigen::Array<bool, Eigen::Dynamic, 1> can_stay_off(const std::vector<Bin>& bins) {
+  Eigen::Array<bool, Eigen::Dynamic, 1> stay(std::ssize(bins));
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    stay[static_cast<Index>(b)] = std::ranges::count(kCanStayOff, diagnosis_channels()[bins[b].channel].column) > 0;
+  return stay;
+}
+
+// The differences of robot and simulation have sqrt(2) of one's; and as one example tells the size, sqrt(2) more of
+// that (chosen: an example as small as half of the next one is not rare).
+constexpr double kOfDifference = 2;
+
+// A period is as long as a climb or a fall (chosen).
+constexpr double kPeriod_s = 2;
+
+std::size_t period_of(const StageFeatures& run, const Bin& bin) {
+  return static_cast<std::size_t>(static_cast<double>(bin.span) * run.span_s / kPeriod_s);
+}
+
+std::size_t most_periods(const std::vector<StageFeatures>& features) {
+  std::size_t most = 0;
+  for (const StageFeatures& run : features)
+    for (const Bin& bin : run.bins) most = std::max(most, period_of(run, bin) + 1);
+  return most;
+}
+
+// For each of kCanStayOff and each period a column: the sum of the changes so far in this period, which later bins
+// keep; 0 if it never reaches a count of the channel. `changes`: in counts.
+MatrixXd ways_on(const StageFeatures& run, const VectorXd& changes, std::size_t periods) {
+  MatrixXd ways = MatrixXd::Zero(changes.size(), static_cast<Index>(kCanStayOff.size() * periods));
+  for (std::size_t b = 0; b < run.bins.size(); ++b) {
+    const Bin& bin = run.bins[b];
+    const auto channel = std::ranges::find(kCanStayOff, diagnosis_channels()[bin.channel].column);
+    if (channel == kCanStayOff.end()) continue;
+    const auto i = static_cast<Index>(b);
+    const auto first = static_cast<Index>(periods) * (channel - kCanStayOff.begin());
+    if (b > 0 && run.bins[b - 1].channel == bin.channel)
+      ways.row(i).segment(first, static_cast<Index>(periods)) =
+          ways.row(i - 1).segment(first, static_cast<Index>(periods));
+    ways(i, first + static_cast<Index>(period_of(run, bin))) += changes[i];
+  }
+  for (auto way : ways.colwise())
+    if (way.cwiseAbs().maxCoeff() < 1) way.setZero();
+  return ways;
 }
 
 // For each bin the largest value of its channel up to one bin earlier or later.
@@ -149,19 +215,27 @@ void compare_against(ComparedFeatures& now, const Baseline& baseline, const Comp
   }
 }
 
-void add_roughness_of_starts(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
-                             const std::vector<VectorXd>& simulated) {
+void add_other_ways(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
+                    const std::vector<VectorXd>& simulated) {
+  const std::size_t periods = most_periods(features);
   for (std::size_t r = 0; r < open.size(); ++r) {
+    const std::vector<Bin>& bins = features[r].bins;
     if (features[r].baseline_simulated.size() == 0) continue;
-    // in counts of the channels, less the best fit of the start pose's shapes
-    VectorXd counts(std::ssize(features[r].bins));
-    for (Index b = 0; b < counts.size(); ++b)
-      counts[b] = diagnosis_channels()[features[r].bins[static_cast<std::size_t>(b)].channel].resolution;
-    const Eigen::MatrixXd start = counts.cwiseInverse().asDiagonal() * open[r].local.leftCols(kShapesOfStart);
+    const VectorXd counts = counts_of(bins);
     const VectorXd difference = (simulated[r] - features[r].baseline_simulated).cwiseQuotient(counts);
-    const VectorXd rest = difference - start * start.completeOrthogonalDecomposition().solve(difference);
-    const VectorXd rough = largest_beside(features[r].bins, rest.cwiseAbs()).cwiseProduct(counts);
-    open[r].roughness = root_of_squares(open[r].roughness, std::numbers::sqrt2 * rough);
+    const MatrixXd start = counts.cwiseInverse().asDiagonal() * open[r].local.leftCols(kShapesOfStart);
+
+    // the fit weighs changes, as after an obstacle all later values are off together
+    const MatrixXd changes_of_start = changes_of(bins, start);
+    const VectorXd rest =
+        difference - start * changes_of_start.completeOrthogonalDecomposition().solve(changes_of(bins, difference));
+
+    // of one run, whose noise counts for the baseline's as well
+    const VectorXd one_run = kOfDifference * counts.cwiseQuotient(noise_of_difference(features[r]));
+    const VectorXd happens = can_stay_off(bins).select(changes_of(bins, rest), rest);
+    const VectorXd rough = largest_beside(bins, happens.cwiseAbs()).cwiseProduct(one_run);
+    open[r].roughness = root_of_squares(open[r].roughness, rough);
+    open[r].ways = one_run.asDiagonal() * ways_on(features[r], happens, periods);
   }
 }
 

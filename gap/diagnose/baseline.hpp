@@ -32,11 +32,14 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
 void compare_against(ComparedFeatures& now, const Baseline& baseline, const ComparedFeatures& before,
                      const std::array<std::vector<Eigen::VectorXd>, kPassages.size()>& residuals);
 
-// Adds to the roughness of each run the difference d between its simulation and its baseline's, except for what is
-// linear in the start pose: from another start pose a climb or a fall begins at another time, and the real one at yet
-// another, by as much again: sqrt(2) d, of the bin itself or the one beside it. `simulated`: of each run, of the
-// nominal robot.
-void add_roughness_of_starts(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
-                             const std::vector<Eigen::VectorXd>& simulated);
+// Adds to each run what another start pose does beyond shapes that are linear in it: from there a climb or a fall
+// begins at another time, and the robot leaves an obstacle in another direction. d: the difference between the run's
+// simulation and its baseline's, less the best fit of the start pose's shapes. The real difference is another one of
+// that size, of which d is the only example: both have 2 d, spread over the run and its baseline as their noise is.
+// Nothing on flat ground undoes a change of x, y or yaw: each period's change of d is a way on of unknown amount, from
+// then on, and rough where it happens. All other channels return: they are rough by d. What happens in a bin may happen
+// in the one beside it. `simulated`: of each run, of the nominal robot.
+void add_other_ways(std::vector<OpenShapes>& open, const std::vector<StageFeatures>& features,
+                    const std::vector<Eigen::VectorXd>& simulated);
 
 }  // namespace kenaf::gap::diagnose

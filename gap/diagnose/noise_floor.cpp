@@ -51,8 +51,9 @@ std::vector<std::size_t> measured_channels(const std::vector<StageFeatures>& fea
 }
 
 Eigen::MatrixXd all_shapes(const OpenShapes& open) {
-  Eigen::MatrixXd shapes(open.roughness.size(), open.local.cols() + open.numerics.cols());
-  shapes << open.local, open.numerics;
+  const Eigen::MatrixXd of_run = shapes_of_run(open);
+  Eigen::MatrixXd shapes(open.roughness.size(), of_run.cols() + open.numerics.cols());
+  shapes << of_run, open.numerics;
   return shapes;
 }
 
@@ -152,15 +153,16 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   floor.noise_of_bin = floor.sigma_of_bin;
   floor.open = open;
 
-  // |x0 - 2 x1 + x2| / sqrt(6) has the noise's sigma, and slow changes cancel in it: of deviations from repeats,
-  // else of the residuals themselves
+  // |x0 - 2 x1 + x2| / sqrt(6) has the noise's sigma, and slow changes cancel in it: of deviations from repeats, in
+  // which a baseline cancels, else of the residuals themselves, which have the baseline's noise, too
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
     if (deviations[r].size() > 0)
       add_second_differences(features[r], deviations[r], shared[r], jumps);
     else
-      add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins.size(), true), jumps);
+      add_second_differences(features[r], residuals[r].cwiseQuotient(noise_of_difference(features[r])),
+                             std::vector<bool>(features[r].bins.size(), true), jumps);
   }
 
   // sigma of a full bin: as stated for n samples / sqrt(n), if no repeats tell; else 1.4826 median, at least a
@@ -198,6 +200,13 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   return floor;
 }
 
+Eigen::MatrixXd shapes_of_run(const OpenShapes& open) {
+  if (open.ways.cols() == 0) return open.local;
+  Eigen::MatrixXd shapes(open.local.rows(), open.local.cols() + open.ways.cols());
+  shapes << open.local, open.ways;
+  return shapes;
+}
+
 VectorXd root_of_squares(const VectorXd& a, const VectorXd& b) {
   return (a.array().square() + b.array().square()).sqrt();
 }
@@ -218,9 +227,10 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
   NoiseFloor result = floor;
   for (std::size_t r = 0; r < open.size(); ++r) {
     result.open[r] = open[r];
+    result.open[r].ways = floor.open[r].ways;
     result.open[r].roughness = floor.open[r].roughness.cwiseMax(open[r].roughness);
     result.sigma_of_bin[r] = root_of_squares(floor.noise_of_bin[r], result.open[r].roughness);
-    result.whiteners[r] = Whitener(result.sigma_of_bin[r], all_shapes(open[r]));
+    result.whiteners[r] = Whitener(result.sigma_of_bin[r], all_shapes(result.open[r]));
   }
   return result;
 }

@@ -43,7 +43,13 @@ struct OpenShapes {
   Eigen::MatrixXd local;
   Eigen::MatrixXd numerics;   // in columns, the same unknown amount in all runs: the simulator's numbers
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
+  // Like `local`, whatever the model: other ways on from other start poses (baseline.hpp); no columns without a
+  // baseline.
+  Eigen::MatrixXd ways{};
 };
+
+// Local shapes and ways, side by side.
+Eigen::MatrixXd shapes_of_run(const OpenShapes& open);
 
 inline constexpr Eigen::Index kShapesOfStart = 6;  // odd and even parts of x, y and yaw, the first of OpenShapes::local
 
@@ -87,7 +93,7 @@ double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>&
                       const std::vector<Eigen::VectorXd>& deviations,
                       const std::vector<std::vector<std::size_t>>& repeats);
 
-// The same noise with the open shapes of another model; roughness is the larger one of both.
+// The same noise and ways with the open shapes of another model; roughness is the larger one of both.
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open);
 
 }  // namespace kenaf::gap::diagnose

@@ -75,7 +75,7 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
   // noise, and the simulation's open shapes around the nominal model
   NoiseFloor& floor = stage.nominal.floor;
   std::vector<OpenShapes> open = open_around(stage, predictor, {});
-  if (has_baseline(features)) add_roughness_of_starts(open, features, predictor.nominal(input.passage));
+  if (has_baseline(features)) add_other_ways(open, features, predictor.nominal(input.passage));
   floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open, input.stated_noise);
   stage.nominal.data = data_in(stage, floor);
 

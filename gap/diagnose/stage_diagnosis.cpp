@@ -40,12 +40,6 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   return a;
 }
 
-// Noise of a run minus its baseline's mean, relative to that of one run, for each bin: sqrt(1 + 1 / n).
-VectorXd noise_of_difference(const StageFeatures& run) {
-  if (run.baseline_runs.size() == 0) return VectorXd::Ones(std::ssize(run.bins));
-  return (1 + run.baseline_runs.array().inverse()).sqrt();
-}
-
 // Copies the bins of one part of a run from `other`.
 void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, const StageFeatures& run) {
   for (std::size_t b = 0; b < run.bins.size(); ++b)

@@ -96,6 +96,11 @@ std::string_view passage_name(Passage passage) {
   return kNames[static_cast<std::size_t>(passage)];
 }
 
+VectorXd noise_of_difference(const StageFeatures& run) {
+  if (run.baseline_runs.size() == 0) return VectorXd::Ones(std::ssize(run.bins));
+  return (1 + run.baseline_runs.array().inverse()).sqrt();
+}
+
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured) {
   StageFeatures stage{{}, map.span_s(), {}, {}};
   if (passage == Passage::body_to_sensor) {

@@ -33,6 +33,11 @@ struct StageFeatures {
   Eigen::VectorXd baseline_runs{};       // baseline runs of each bin (baseline.hpp); empty: no baseline
   Eigen::VectorXd baseline_simulated{};  // mean of these runs, as the nominal robot drives them
 };
+
+// Noise of a run less its baseline's mean, relative to that of one run, for each bin: sqrt(1 + 1 / n); 1 without a
+// baseline.
+Eigen::VectorXd noise_of_difference(const StageFeatures& run);
+
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured);
 
 // The same values for a simulated run. `features`: its FeatureMap::of().

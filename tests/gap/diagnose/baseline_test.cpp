@@ -79,31 +79,61 @@ TEST_CASE("Less what the runs of before differ from the simulation by, bin by bi
   CHECK(run.rows == std::vector<Eigen::Index>{0, 1, 2});
 }
 
-TEST_CASE("What other start poses do beyond what is linear in them counts as noise") {
-  // x in counts of the channel: 3 further on at the start, so 3 all along; in the third bin the robot falls 40 earlier
+TEST_CASE("After an obstacle, other start poses lead another way: rough where it happens, unknown from then on") {
+  // x in counts of the channel: 3 further on at the start, so 3 all along; from the third bin on 40 more
   const double count = diagnosis_channels()[x_m()].resolution;
-  StageFeatures run = run_of(count * numbers({0, 0, 0, 0}));
-  run.baseline_runs = numbers({1, 1, 1, 1});
-  run.baseline_simulated = count * numbers({0, 10, 20, 30});
-  OpenShapes shapes{MatrixXd::Zero(4, kShapesOfStart), MatrixXd::Zero(4, 0), numbers({0, 0, 0, 0})};
-  shapes.local.col(0) = count * numbers({1, 1, 1, 1});
+  StageFeatures run = run_of(count * numbers({0, 0, 0, 0, 0}));
+  run.baseline_runs = numbers({1, 1, 1, 1, 1});
+  run.baseline_simulated = count * numbers({0, 10, 20, 30, 40});
+  OpenShapes shapes{MatrixXd::Zero(5, kShapesOfStart), MatrixXd::Zero(5, 0), numbers({0, 0, 0, 0, 0})};
+  shapes.local.col(0) = count * numbers({1, 1, 1, 1, 1});
   std::vector<OpenShapes> open{shapes};
-  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 23, 33})});
+  add_other_ways(open, {run}, {count * numbers({3, 13, 23, 33, 43})});
   CHECK(open[0].roughness.norm() < 1e-9 * count);
+  CHECK(open[0].ways.norm() < 1e-9 * count);
 
-  // the best offset is 13: it leaves 10 of each of the others and 30 there, which the bins beside it may have as well;
-  // the real robot by as much again, in squares
-  const VectorXd rough = std::sqrt(2.0) * numbers({10, 30, 30, 30});
-  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 63, 33})});
-  CHECK((open[0].roughness / count - rough).norm() < 1e-9);
+  // the start's 3 remain 3, as they fit the first value and no change. With the real difference 2 x 40, of each of the
+  // two runs sqrt(2) 40
+  add_other_ways(open, {run}, {count * numbers({3, 13, 63, 73, 83})});
+  const VectorXd rough = numbers({0, 40, 40, 40, 0});
+  CHECK((open[0].roughness / count / std::sqrt(2.0) - rough).norm() < 1e-9);
+  const VectorXd way = numbers({0, 0, 40, 40, 40});
+  CHECK((open[0].ways.rowwise().sum() / count / std::sqrt(2.0) - way).norm() < 1e-9);
+  CHECK(open[0].ways.colwise().norm().maxCoeff() == Approx(open[0].ways.norm()));  // one column has it all
   // with what was rough before, in squares
-  add_roughness_of_starts(open, {run}, {count * numbers({3, 13, 63, 33})});
-  CHECK((open[0].roughness / count - std::sqrt(2.0) * rough).norm() < 1e-9);
+  add_other_ways(open, {run}, {count * numbers({3, 13, 63, 73, 83})});
+  CHECK((open[0].roughness / count / 2 - rough).norm() < 1e-9);
 
   // without a baseline nothing
   std::vector<OpenShapes> alone{shapes};
-  add_roughness_of_starts(alone, {run_of(count * numbers({0, 0, 0, 0}))}, {count * numbers({3, 13, 63, 33})});
+  add_other_ways(alone, {run_of(count * numbers({0, 0, 0, 0, 0}))}, {count * numbers({3, 13, 63, 73, 83})});
   CHECK(alone[0].roughness.norm() == 0);
+  CHECK(alone[0].ways.cols() == 0);
+}
+
+TEST_CASE("What the ground brings back is rough, and no way on") {
+  const double count = diagnosis_channels()[x_m() + 2].resolution;  // z
+  StageFeatures run = run_of(numbers({0, 0, 0, 0}));
+  for (Bin& bin : run.bins) bin.channel = x_m() + 2;
+  run.baseline_runs = numbers({1, 1, 1, 1});
+  run.baseline_simulated = numbers({0, 0, 0, 0});
+  std::vector<OpenShapes> open{{MatrixXd::Zero(4, kShapesOfStart), MatrixXd::Zero(4, 0), numbers({0, 0, 0, 0})}};
+  add_other_ways(open, {run}, {count * numbers({0, 0, 0, 7})});
+  CHECK((open[0].roughness / count / std::sqrt(2.0) - numbers({0, 0, 7, 7})).norm() < 1e-9);
+  CHECK(open[0].ways.norm() == 0);
+}
+
+TEST_CASE("Noise told by a difference from a baseline is that of one run") {
+  // runs without repeats whose differences from two baselines jump by 30 sqrt(1 + 1 / 2) times a noise of 1: second
+  // differences of +-a, alternating, are 4 a, and sqrt(6) of the noise
+  constexpr double kResolutions = 30;
+  const double count = diagnosis_channels()[x_m()].resolution;
+  const double a = kResolutions * count * std::sqrt(6.0) / 4 / 1.4826 * std::sqrt(1.5);
+  StageFeatures run = run_of(numbers({a, -a, a, -a, a, -a}));
+  run.baseline_runs = numbers({2, 2, 2, 2, 2, 2});
+  const OpenShapes none{MatrixXd::Zero(6, 0), MatrixXd::Zero(6, 0), VectorXd::Zero(6)};
+  const NoiseFloor floor = noise_floor({run}, {run.measured}, {{0}}, {none});
+  CHECK(floor.sigma[x_m()] == Approx(kResolutions * count));
 }
 
 TEST_CASE("The noise of a change is that of both means, and the simulator's numbers cancel") {
