@@ -30,6 +30,9 @@ struct DecisionSettings {
   double left_of_kind = 0.174;
   // Largest difference between the value of one kind of channels and that of all, as a fraction of the effect (chosen).
   double alike = 0.3;
+  // In a set, two effects at least stand in for each other: the sine of the angle between their shifts is at most this
+  // (chosen: half of what one does, squared, the other could do).
+  double apart_in_set = 0.7;
   // Relative increase of the squared residual in another stage that refutes an effect (chosen).
   double more_left = 0.1;
   std::size_t most_effects = 6;

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "gap/diagnose/judgement.hpp"
+#include "gap/diagnose/stage_data.hpp"
+#include "gap/diagnose/substitutes.hpp"
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -43,7 +45,12 @@ SharesOfEffects shares_of_effects(const StageView& view, Passage passage, const 
                            const Folds& folds) {
     return shares_of_sets_held_out(view, passage, best, sets, without, folds, threads);
   };
-  const auto sets = sets_small_first(places_of_sets(shares.of_repeats, shares.of_manoeuvres, settings));
+  std::vector<std::vector<std::size_t>> sets =
+      sets_small_first(places_of_sets(shares.of_repeats, shares.of_manoeuvres, settings));
+  const Eigen::MatrixXd products =
+      products_of_effects(stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor), best);
+  std::erase_if(
+      sets, [&](const std::vector<std::size_t>& set) { return least_apart(products, set) > settings.apart_in_set; });
   shares.of_repeats.sets = of_sets(sets, {}, by_repeat);
   shares.of_manoeuvres.sets = of_sets(sets, {}, by_manoeuvre);
   std::vector<std::size_t> large;
