@@ -1,6 +1,7 @@
 // The chosen robot in figures.
 import { fixed } from "./numbers.js";
 import { letDrag } from "./reading_drag.js";
+import { SIGNALS } from "./signals.js";
 import { angles } from "./world.js";
 
 const ROWS = [   // label, text of a robot's state, wide, its signal (signals.js)
@@ -37,7 +38,8 @@ export function createInstruments(plot, show) {
     button.type = "button";
     button.className = "reading";
     button.textContent = label;
-    button.title = `Plot of ${label}`;
+    const { positive } = SIGNALS[signal];
+    button.title = `Plot of ${label}${positive ? `; positive: ${positive}` : ""}`;
     letDrag(button, document.getElementById("timeline"), () => show(signal));
     button.addEventListener("click", () => plot(signal));
     buttons.set(signal, button);

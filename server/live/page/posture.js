@@ -1,5 +1,4 @@
 // The chosen robot's outline from the side and from behind, at its pitch and roll over a level line.
-import { fixed } from "./numbers.js";
 import { angles } from "./world.js";
 
 const NS = "http://www.w3.org/2000/svg";
@@ -8,6 +7,12 @@ function add(parent, name, attributes) {
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
   parent.append(element);
   return element;
+}
+
+// In words, as the sign of an angle is a convention that few know.
+function leaning(positive, negative, neither, angle_deg) {
+  const degrees = Math.abs(angle_deg).toFixed(1);
+  return `${degrees === "0.0" ? neither : angle_deg > 0 ? positive : negative} ${degrees}\u00b0`;
 }
 
 export function createPosture() {
@@ -49,8 +54,8 @@ export function createPosture() {
       const { roll, pitch } = angles(now.q);
       parts.front.setAttribute("transform", `rotate(${-pitch})`);
       parts.rear.setAttribute("transform", `rotate(${roll})`);
-      parts.labels[0].textContent = `pitch ${fixed(pitch, 1)}\u00b0`;
-      parts.labels[1].textContent = `roll ${fixed(roll, 1)}\u00b0`;
+      parts.labels[0].textContent = leaning("nose down", "nose up", "pitch", pitch);
+      parts.labels[1].textContent = leaning("right down", "left down", "roll", roll);
       parts.arms.forEach((arm) => {
         const i = Number(arm.dataset.arm);
         const { length, at } = about.flipper, angle = now.flipper[i], outward = i === 0 ? -1 : 1;

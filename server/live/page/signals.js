@@ -4,14 +4,14 @@ import { angles } from "./world.js";
 const DEG = 180 / Math.PI;
 const four = (values) => ["front left", "front right", "rear left", "rear right"].map((where, i) => [where, (now) => values(now)?.[i]]);
 
-// `least`: a plot shows at least this from its lowest to its highest value. `zero`: zero is in it.
+// `positive`: what a positive angle means. `least`: a plot shows at least this from its lowest to its highest value. `zero`: zero is in it.
 export const SIGNALS = {
   speed: { name: "Speed", unit: "m/s", least: 0.5, zero: true, lines: [["left", (now) => now.track_mps[0]], ["right", (now) => now.track_mps[1]]] },
-  pitch: { name: "Pitch", unit: "\u00b0", least: 10, zero: true, lines: [["pitch", (now) => angles(now.q).pitch]] },
+  pitch: { name: "Pitch", unit: "\u00b0", positive: "nose down", least: 10, zero: true, lines: [["pitch", (now) => angles(now.q).pitch]] },
   currents: { name: "Currents", unit: "A", least: 5, zero: true, lines: [["tracks", (now) => now.track_a[0] + now.track_a[1]],
     ["flippers", (now) => now.flipper_a?.reduce((a, b) => a + b)]] },
-  roll: { name: "Roll", unit: "\u00b0", least: 10, zero: true, lines: [["roll", (now) => angles(now.q).roll]] },
-  heading: { name: "Heading", unit: "\u00b0", least: 10, turns: true, lines: [["heading", (now) => angles(now.q).yaw]] },
+  roll: { name: "Roll", unit: "\u00b0", positive: "right side down", least: 10, zero: true, lines: [["roll", (now) => angles(now.q).roll]] },
+  heading: { name: "Heading", unit: "\u00b0", positive: "to the left", least: 10, turns: true, lines: [["heading", (now) => angles(now.q).yaw]] },
   left: { name: "Left track", unit: "m/s", least: 0.5, zero: true, lines: [["measured", (now) => now.track_mps[0]], ["commanded", (now) => now.command?.track[0]]] },
   right: { name: "Right track", unit: "m/s", least: 0.5, zero: true, lines: [["measured", (now) => now.track_mps[1]], ["commanded", (now) => now.command?.track[1]]] },
   travel: { name: "Travel", unit: "m", least: 0.5, lines: [["left", (now) => now.track_m[0]], ["right", (now) => now.track_m[1]]] },
