@@ -24,8 +24,7 @@ const Session* robot_at(const Simulation& simulation, const physics::Pose& X_WB,
 
 // Places the session's robot, at rest. If another robot has its name, the log and both clients that have a Session are
 // told: CONTROL and the image server know robots by their names. So they are if another robot stands there: the two
-// push each other apart. If it throws, neither the world nor the session has a
-// new robot.
+// push each other apart. If it throws, neither the world nor the session has a new robot.
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB);
 
