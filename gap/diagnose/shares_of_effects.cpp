@@ -47,6 +47,7 @@ SharesOfEffects shares_of_effects(const StageView& view, Passage passage, const 
   };
   std::vector<std::vector<std::size_t>> sets =
       sets_small_first(places_of_sets(shares.of_repeats, shares.of_manoeuvres, settings));
+  if (sets.empty()) return shares;
   const Eigen::MatrixXd products =
       products_of_effects(stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor), best);
   std::erase_if(
