@@ -66,7 +66,7 @@ VectorXd vector_of(const std::vector<double>& values) {
 }
 
 StageFeatures less_baseline(const StageFeatures& stage, const BaselineBins& baseline) {
-  StageFeatures result{{}, stage.span_s, {}, {}, {}, {}};
+  StageFeatures result{{}, stage.span_s, {}, {}, stage.at_rest_s, {}, {}};
   std::vector<double> measured, runs, simulated;
   for (std::size_t b = 0; b < stage.bins.size(); ++b) {
     const auto found = baseline.find({stage.bins[b].channel, stage.bins[b].span});

@@ -210,4 +210,12 @@ std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
                       [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, is_misfit_of_kinds); });
 }
 
+std::vector<std::size_t> places_to_try(const StageDecision& decision) {
+  constexpr auto depends_on_others = [](Doubt doubt) {
+    return doubt == Doubt::negligible || doubt == Doubt::little_explained || is_misfit_of_kinds(doubt);
+  };
+  return places_where(decision,
+                      [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, depends_on_others); });
+}
+
 }  // namespace kenaf::gap::diagnose

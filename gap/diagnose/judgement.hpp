@@ -30,6 +30,9 @@ void doubt_unless_simulated(StageDecision& decision, double simulated, const Dec
 std::vector<std::size_t> places_with_name(const StageDecision& decision);
 // Those, and of effects that only resemble what they explain: without these, that would bend the others' values.
 std::vector<std::size_t> places_to_keep(const StageDecision& decision);
+// Those, and of effects that only lack a share of the stage or of its model: these shares may change without the other
+// effects.
+std::vector<std::size_t> places_to_try(const StageDecision& decision);
 
 // Takes names away from effects that differ too little from their present values (ModelEffect::sure_from).
 void doubt_uncertain_values(StageDecision& decision, std::span<const candidates::Candidate> candidates);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/held_forces.hpp"
 #include "gap/logs/median.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -255,12 +256,12 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
         minus ? std::max(1, model.physics.solver_iterations / 2) : 2 * model.physics.solver_iterations;
   }
   const std::vector<Shift> shifts = predictor.shifts(variations, passage, Fidelity::fine);
-  const std::vector<std::size_t> measured = measured_channels(features);
+  const std::vector<std::size_t> measured = measured_channels(features), currents = motor_currents(measured);
   std::vector<OpenShapes> open;
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins.size());
     const auto channels = std::ssize(measured);
-    OpenShapes run{Eigen::MatrixXd::Zero(size, kShapesOfStart + 2 * channels),
+    OpenShapes run{Eigen::MatrixXd::Zero(size, kShapesOfStart + 2 * channels + std::ssize(currents)),
                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart)), VectorXd::Zero(size)};
     // one count of a sensor persists while the robot rolls on, and its clock's error for the whole log
     const VectorXd late = shifts[2 * kOpen][r] - shifts.back()[r];
@@ -270,6 +271,7 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
       run.local(b, place) = diagnosis_channels()[channel].resolution;
       run.local(b, place + channels) = late[b];
     }
+    run.local.rightCols(std::ssize(currents)) = held_forces(features[r], currents);
     // odd and even part of the shifts: (plus - minus) / 2 and (plus + minus) / 2; even parts add to the roughness in
     // squares
     for (std::size_t i = 0; i < kOpen; ++i) {

@@ -39,7 +39,8 @@ class Whitener {
 // negative if all is smooth (odd part). The even part (a fall that begins earlier either way, a landing that may
 // continue in two ways) is a shape too; as it may occur elsewhere next time, it also counts as noise of those bins.
 struct OpenShapes {
-  // In columns, each with a separate unknown amount in each run: start pose (kShapesOfStart), sensors' counts.
+  // In columns, each with a separate unknown amount in each run: start pose (kShapesOfStart), sensors' counts and
+  // clocks, forces held while the robot stands.
   Eigen::MatrixXd local;
   Eigen::MatrixXd numerics;   // in columns, the same unknown amount in all runs: the simulator's numbers
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
@@ -74,8 +75,8 @@ inline constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
 
 // Varies the start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, solver iterations, contact
 // stiffness and damping by a factor of 2 either way; and each channel by an offset of its resolution, as one count
-// persists while the robot rolls on. Varies around `model`, as events occur at its times. Repeats share the shapes of
-// one of them.
+// persists while the robot rolls on. Adds the forces that a standing robot holds (held_forces.hpp). Varies around
+// `model`, as events occur at its times. Repeats share the shapes of one of them.
 std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad);
 

@@ -31,9 +31,13 @@ ComparedFeatures compared_features(const Observations& observations, double span
   ComparedFeatures features;
   for (const Observation& observation : observations.runs) {
     features.maps.emplace_back(observation.run, span_s, observations.not_simulated);
-    for (const Passage passage : kPassages)
-      features.of_stage[static_cast<std::size_t>(passage)].push_back(
+    const auto time = observation.run.column("t_s");
+    const double at_rest_s = observation.resting_rows < time.size() ? time[observation.resting_rows] : time.back();
+    for (const Passage passage : kPassages) {
+      StageFeatures& stage = features.of_stage[static_cast<std::size_t>(passage)].emplace_back(
           stage_features(passage, features.maps.back(), observation.run));
+      stage.at_rest_s = at_rest_s;
+    }
   }
   return features;
 }

@@ -242,13 +242,19 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   };
   if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
 
-  // only effects with a name and their look-alikes, unless the named ones need the others to be significant
-  const std::size_t names = places_with_name(stage.decision).size();
-  const std::vector<std::size_t> kept = places_to_keep(stage.decision);
-  if (names > 0 && kept.size() < stage.decision.effects.size()) {
+  // without effects that are no causes: they take shares from others, and bend their values
+  const auto with_alone = [&](const std::vector<std::size_t>& kept, std::size_t at_least_names) {
+    if (kept.empty() || kept.size() == stage.decision.effects.size()) return;
     StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, kept));
-    if (places_with_name(alone.decision).size() >= names) stage = std::move(alone);
-  }
+    if (places_with_name(alone.decision).size() >= at_least_names) stage = std::move(alone);
+  };
+  const std::size_t names = places_with_name(stage.decision).size();
+  if (places_to_try(stage.decision) != places_to_keep(stage.decision))
+    with_alone(places_to_try(stage.decision), names + 1);
+
+  // only effects with a name and their look-alikes, unless the named ones need the others to be significant
+  if (const std::size_t named = places_with_name(stage.decision).size(); named > 0)
+    with_alone(places_to_keep(stage.decision), named);
   doubt_unless_simulated(stage.decision, simulated_share(stage, options.decision), options.decision);
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;

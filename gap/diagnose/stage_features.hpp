@@ -30,6 +30,7 @@ struct StageFeatures {
   double span_s = 0;                     // of a bin
   Eigen::VectorXd measured;              // mean of each bin, in the unit of its channel
   std::vector<Eigen::Index> rows{};      // indices of the bins in the run's FeatureMap
+  double at_rest_s = 0;                  // from the start to the first command to move
   Eigen::VectorXd baseline_runs{};       // baseline runs of each bin (baseline.hpp); empty: no baseline
   Eigen::VectorXd baseline_simulated{};  // mean of these runs, as the nominal robot drives them
 };

@@ -111,12 +111,13 @@ std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const M
   return item;
 }
 
+// With the first reason of each: the stage's own section has them all.
 std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
   std::vector<std::string> doubted;
   for (const ModelEffect& effect : stage.decision.effects)
     if (!effect.doubts.empty())
       doubted.push_back(
-          fmt::format("{} ({})", d.candidates[effect.candidate].name, fmt::join(doubts_in_words(d, effect), "; ")));
+          fmt::format("{} ({})", d.candidates[effect.candidate].name, doubts_in_words(d, effect).front()));
   std::string item = names_found(stage).empty() ? "no effect is named. " : "";
   if (!doubted.empty()) item += fmt::format("{}ot named: {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
   if (names_found(stage).empty())

@@ -512,6 +512,21 @@ TEST_CASE("A look-alike stays in the model without a name, and what explains not
   CHECK(places_to_keep(decision) == std::vector<std::size_t>{0, 1, 2});
 }
 
+// What an effect explains of a stage, and what its model explains, depends on the model's other effects; its value at
+// an end of its range, or a share too small where it acts most, is its own.
+TEST_CASE("Only doubts that may be due to other effects leave an effect to be tried without these") {
+  StageDecision decision;
+  for (const std::vector<Doubt>& doubts : {std::vector<Doubt>{Doubt::negligible},
+                                           {Doubt::end_of_range, Doubt::little_explained},
+                                           {Doubt::little_explained, Doubt::leaves_much},
+                                           {Doubt::not_held_out},
+                                           {}}) {
+    decision.effects.emplace_back();
+    decision.effects.back().doubts = doubts;
+  }
+  CHECK(places_to_try(decision) == std::vector<std::size_t>{0, 2, 4});
+}
+
 TEST_CASE("A model that explains a gap on curves and not in simulation gives no name") {
   CHECK(judged_with({{1, 0.9, 1.1}, 0, 1}, 0.15).verdict == Verdict::named);
   CHECK(judged_with({{1, 0.9, 1.1}, 0, 1}, -0.6).verdict == Verdict::unknown);
