@@ -14,10 +14,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Chosen: this many give a standard error to a quarter of itself.
-constexpr std::size_t kRobots = 8;
+// Chosen: this many give a standard error to a sixth of itself. Half as many ask for 1.4 times the distance from no
+// effect for the same certainty.
+constexpr std::size_t kRobots = 16;
 // Quantiles of Student's t with kRobots degrees of freedom in place of a normal distribution's 1.96 (kHalfWidth) and 4.
-constexpr double kHalfWidthOfRobots = 2.306, kFourSigmaOfRobots = 7.60;
+constexpr double kHalfWidthOfRobots = 2.120, kFourSigmaOfRobots = 5.364;
 
 // Errors of the numbers alone; uniform, like a tolerance.
 Settings drawn(std::span<const candidates::Candidate> candidates, const NumbersOff& numbers, Random& random) {
@@ -54,16 +55,15 @@ std::vector<MatrixXd> differences_of_robots(const StageData& data, const Standin
   if (numbers.also_before || numbers.also_without) shifts_without = simulate(without, Fidelity::fine);
   std::vector<MatrixXd> differences;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    differences.emplace_back(std::ssize(data.groups[g].bins), 2 * kRobots);
+    MatrixXd& of_group = differences.emplace_back(MatrixXd::Zero(std::ssize(data.groups[g].bins), 2 * kRobots));
     for (std::size_t i = 0; i < kRobots; ++i) {
-      VectorXd changed = shifts[i + 1][g] - shifts[0][g], unchanged = VectorXd::Zero(changed.size());
-      if (!shifts_without.empty()) unchanged = shifts_without[i + 1][g] - shifts_without[0][g];
-      if (numbers.also_before) {
-        changed -= unchanged;
-        unchanged.setZero();
-      }
-      differences.back().col(static_cast<Index>(i)) = changed;
-      differences.back().col(static_cast<Index>(kRobots + i)) = unchanged;
+      auto changed = of_group.col(static_cast<Index>(i)), unchanged = of_group.col(static_cast<Index>(kRobots + i));
+      changed = shifts[i + 1][g] - shifts[0][g];
+      if (shifts_without.empty()) continue;
+      unchanged = shifts_without[i + 1][g] - shifts_without[0][g];
+      if (!numbers.also_before) continue;
+      changed -= unchanged;
+      unchanged.setZero();
     }
   }
   return differences;

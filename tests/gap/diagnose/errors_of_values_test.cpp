@@ -38,8 +38,8 @@ double value_in(const Settings& settings, std::size_t candidate) {
 }  // namespace
 
 TEST_CASE("A number that makes an effect larger by as much leaves its value as much more open than noise does") {
-  // an effect of 0.5 that is larger by the number's part: the value is wrong by 0.5 * 0.1. Eight robots tell that to a
-  // quarter
+  // an effect of 0.5 that is larger by the number's part: the value is wrong by 0.5 * 0.1. 16 robots tell that to a
+  // sixth
   const auto larger = [](const Settings& settings) -> Whole {
     return kPerValue * value_in(settings, 0) * (1 + value_in(settings, 1)) * world().direction(0);
   };
@@ -76,16 +76,16 @@ TEST_CASE("A number that does something else, or does it in the baseline as well
   CHECK(error_of_value(the_same, {{1}, kOff, true}).of_numbers == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("Errors from eight robots reach further than as many from noise, and the more so the rarer they are") {
-  // Student's t with 8 degrees of freedom: 2.306 for 1.96, 7.60 for 4; both together by their squares
+TEST_CASE("Errors from 16 robots reach further than as many from noise, and the more so the rarer they are") {
+  // Student's t with 16 degrees of freedom: 2.120 for 1.96, 5.364 for 4; both together by their squares
   CHECK(ErrorOfValue{0.1, 0}.half_width() == Approx(0.196));
   CHECK(ErrorOfValue{0.1, 0}.four_sigma() == Approx(0.4));
-  CHECK(ErrorOfValue{0, 0.1}.half_width() == Approx(0.2306));
-  CHECK(ErrorOfValue{0, 0.1}.four_sigma() == Approx(0.760));
-  CHECK(ErrorOfValue{0.3, 0.1}.four_sigma() == Approx(std::hypot(1.2, 0.76)));
+  CHECK(ErrorOfValue{0, 0.1}.half_width() == Approx(0.2120));
+  CHECK(ErrorOfValue{0, 0.1}.four_sigma() == Approx(0.5364));
+  CHECK(ErrorOfValue{0.3, 0.1}.four_sigma() == Approx(std::hypot(1.2, 0.5364)));
   // a name needs more than what the robot without the effect could do; an interval is about the one with it
-  CHECK(ErrorOfValue{0, 0.1, 0.2}.four_sigma() == Approx(1.52));
-  CHECK(ErrorOfValue{0, 0.1, 0.2}.half_width() == Approx(0.2306));
+  CHECK(ErrorOfValue{0, 0.1, 0.2}.four_sigma() == Approx(1.0728));
+  CHECK(ErrorOfValue{0, 0.1, 0.2}.half_width() == Approx(0.2120));
 }
 
 TEST_CASE("An interval becomes wider, never narrower, and stays in the range") {
