@@ -32,6 +32,12 @@ RUN_AXE = '''axe.run(document, {rules: {'target-size': {enabled: true}}, resultT
     .filter(({element}) => !(id === 'target-size' && element.matches('#marks > .mark')))
     .map(({target}) => [`${id} (${help})`, target.join(' ')])))'''
 RUN_PAGE_CHECKS = '''['overlaps', 'pale', 'nameless', 'small'].flatMap((rule) => window[rule]().map((what) => [rule, what]))'''
+# Software draws the 3D view: at full rate it would leave no time for what looks at the page.
+FEW_FRAMES = '''(() => {
+  const { requestAnimationFrame } = window;
+  window.requestAnimationFrame = (draw) => setTimeout(() => requestAnimationFrame(draw), 250);
+  window.cancelAnimationFrame = (timer) => clearTimeout(timer);
+})()'''
 IS_DRAWN = 'new Promise((drawn) => setTimeout(() => requestAnimationFrame(() => drawn(true)), 500))'  # the 3D view takes turns
 
 
@@ -54,24 +60,31 @@ def connected(browser):
     browser.wait_for("document.getElementById('link')?.dataset.state === 'good'")
 
 
+# Takes the robot, too, from a page that was busy for longer than 10 s: by the server's rules it was let go of.
+HOLDS = '''(() => {
+  const take = document.getElementById('take');
+  if (!take.disabled) take.click();
+  return document.getElementById('drive-state').dataset.state === 'held';
+})()'''
+
+
 def place(robots):
-    """Places robots by hand, the last of which is held."""
+    """Places robots by hand at free starts, the last of which is held."""
     def placed(browser):
         connected(browser)
         for robot in range(robots):
             browser.wait_for("!document.getElementById('place').disabled")
             browser.evaluate("document.getElementById('place').click()")
-            browser.wait_for(f"document.getElementById('robot').options.length === {robot + 1} && "
-                             "document.getElementById('drive-state').dataset.state === 'held'")
+            browser.press('Enter')  # nowhere in particular
+            browser.wait_for(f"document.getElementById('robot').options.length === {robot + 1}")
+            browser.wait_for(HOLDS)
     return placed
 
 
 def held(browser):
-    """A page that was busy for longer than 10 s was let go of, by the server's rules."""
     connected(browser)
-    if browser.evaluate("!document.getElementById('take').disabled"):
-        browser.evaluate("document.getElementById('take').click()")
-    browser.wait_for("document.getElementById('drive-state').dataset.state === 'held' && " + HAS_PICTURES)
+    browser.wait_for(HOLDS)
+    browser.wait_for(HAS_PICTURES)
 
 
 def press(identity):
@@ -116,8 +129,7 @@ def play(build):
 def played(browser):
     browser.wait_for("document.querySelectorAll('.mark').length && document.querySelectorAll('#difference td').length")
     for _ in range(30):  # to where the robots differ
-        browser.key('ArrowRight', True)
-        browser.key('ArrowRight', False)
+        browser.press('ArrowRight')
 
 
 def curves(browser):
@@ -158,6 +170,7 @@ def look_at(page, build, axe_source):
     with page.served(build) as url, Browser(page.switches) as browser:
         width, height, phone = SIZES[0]
         browser.resize(width, height, phone)
+        browser.call('Page.addScriptToEvaluateOnNewDocument', source=FEW_FRAMES)
         browser.open(url)
         page.prepare(browser)
         browser.evaluate(axe_source + ';0')

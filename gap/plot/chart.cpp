@@ -17,7 +17,7 @@ namespace kenaf::gap::plot {
 namespace {
 
 constexpr double kLeft_px = 70, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
-constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
+constexpr double kLegendBase_px = 38, kLegendSample_px = 24;
 constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
 constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 26;
 constexpr double kTolerance_px = 0.15;  // largest distance of a point from the drawn line
@@ -260,20 +260,12 @@ std::string to_svg(const Chart& chart) {
   const View view = view_of(chart, bounds);
   const double height_px = view.height_px + kTop_px + kBottom_px;
   std::string svg;
-  const auto out = std::back_inserter(svg);
-  fmt::format_to(out,
-                 "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" "
-                 "width=\"{1:.0f}\" height=\"{2:.0f}\" viewBox=\"0 0 {1:.0f} {2:.0f}\">\n"
-                 "<text class=\"title\" x=\"{3}\" y=\"{4}\">{0}</text>\n",
-                 escaped(chart.title), chart.width_px, height_px, kLeft_px, kTitleBase_px);
-  if (empty) {
-    fmt::format_to(out, "<text x=\"{}\" y=\"{}\">not measured</text>\n", kLeft_px, kLegendBase_px);
-  } else {
-    svg += legend(chart);
-    fmt::format_to(out, "<g transform=\"translate({} {})\">\n", kLeft_px, kTop_px);
-    svg += axes(chart, view) + contents(chart, view) + "</g>\n";
-  }
-  return svg + "</svg>\n";
+  if (empty)
+    svg = text_at(kLeft_px, kLegendBase_px, "not measured");
+  else
+    svg = fmt::format("{}<g transform=\"translate({} {})\">\n{}{}</g>\n", legend(chart), kLeft_px, kTop_px,
+                      axes(chart, view), contents(chart, view));
+  return svg_chart(chart.title, chart.width_px, height_px, svg, kLeft_px);
 }
 
 std::string escaped(std::string_view text) {

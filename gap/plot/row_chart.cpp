@@ -170,10 +170,8 @@ std::string to_svg(const RowChart& chart) {
   const Room room = room_of(chart);
   const Scale scale{range_of(chart), chart.logarithmic, chart.width_px - room.label_px - room.note_px - kRowEdge_px};
   if (chart.rows.empty())
-    return svg_begin(chart.title, chart.width_px, kTitle_px + 24) + text_at(0, kTitle_px + 12, "nothing to show") +
-           "</svg>\n";
-  std::string svg =
-      svg_begin(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px) + legend_of(chart, room.label_px);
+    return svg_chart(chart.title, chart.width_px, kTitle_px + 24, text_at(0, kTitle_px + 12, "nothing to show"));
+  std::string svg = legend_of(chart, room.label_px);
   const auto out = std::back_inserter(svg);
   fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", room.label_px, top_px);
 
@@ -199,7 +197,7 @@ std::string to_svg(const RowChart& chart) {
   for (std::size_t i = 0; i < chart.rows.size(); ++i)
     svg += row_of(chart.rows[i], scale, room, kRow_px * (static_cast<double>(i) + 0.5));
   fmt::format_to(out, "<path class=\"frame\" d=\"M0 0h{0:.1f}v{1:.1f}h-{0:.1f}z\"/>\n</g>\n", scale.width_px, rows_px);
-  return svg + "</svg>\n";
+  return svg_chart(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px, svg);
 }
 
 }  // namespace kenaf::gap::plot

@@ -58,14 +58,13 @@ std::string to_svg(const StripChart& chart) {
   for (const Strip& strip : chart.strips)
     for (const StripSpan& span : strip.spans) range = {std::min(range.low, span.from), std::max(range.high, span.to)};
   if (range.span() <= 0)
-    return svg_begin(chart.title, chart.width_px, kStripsTop_px) + text_at(0, 38, "nothing to show") + "</svg>\n";
+    return svg_chart(chart.title, chart.width_px, kStripsTop_px, text_at(0, 38, "nothing to show"));
 
   // The common axis begins at 0 or earlier, right of the labels.
   const double label_px = room_for_labels(chart), width_px = chart.width_px - label_px - kStripsRight_px;
   const double height_px = (kStrip_px + kGap_px) * static_cast<double>(chart.strips.size());
   const auto at = [&](double value) { return (value - range.low) / range.span() * width_px; };
-  std::string svg =
-      svg_begin(chart.title, chart.width_px, kStripsTop_px + height_px + kStripsBottom_px) + scale_of(chart);
+  std::string svg = scale_of(chart);
   const auto out = std::back_inserter(svg);
   fmt::format_to(out, "<g transform=\"translate({:.1f} {:.1f})\">\n", label_px, kStripsTop_px);
 
@@ -84,7 +83,8 @@ std::string to_svg(const StripChart& chart) {
     for (const StripSpan& span : chart.strips[s].spans)
       svg += span_of(span, at(span.from), at(span.to) - at(span.from), y);
   }
-  return svg + "</g>\n</svg>\n";
+  svg += "</g>\n";
+  return svg_chart(chart.title, chart.width_px, kStripsTop_px + height_px + kStripsBottom_px, svg);
 }
 
 }  // namespace kenaf::gap::plot

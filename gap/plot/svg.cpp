@@ -12,15 +12,19 @@ namespace {
 
 constexpr double kSvgTitleBase_px = 16;
 constexpr double kMeanLetter_px = 7.2;  // about the mean width of a letter at the font size of 13
-constexpr double kMostShade = 0.62;     // largest opacity: text on it keeps a contrast of 4.5 in both themes
+constexpr std::string_view kLink = "<a href=";
+constexpr double kMostShade = 0.62;  // largest opacity: text on it keeps a contrast of 4.5 in both themes
 
 }  // namespace
 
-std::string svg_begin(std::string_view title, double width_px, double height_px, double title_x_px) {
+std::string svg_chart(std::string_view title, double width_px, double height_px, std::string_view contents,
+                      double title_x_px) {
+  const bool has_links = contents.find(kLink) != std::string_view::npos;
   return fmt::format(
-      "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" width=\"{1:.0f}\" "
-      "height=\"{2:.0f}\" viewBox=\"0 0 {1:.0f} {2:.0f}\">\n<text class=\"title\" x=\"{3:.0f}\" y=\"{4}\">{0}</text>\n",
-      escaped(title), width_px, height_px, title_x_px, kSvgTitleBase_px);
+      "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" role=\"{5}\" aria-label=\"{0}\" width=\"{1:.0f}\" "
+      "height=\"{2:.0f}\" viewBox=\"0 0 {1:.0f} {2:.0f}\">\n<text class=\"title\" x=\"{3:.0f}\" y=\"{4}\">{0}</text>\n"
+      "{6}</svg>\n",
+      escaped(title), width_px, height_px, title_x_px, kSvgTitleBase_px, has_links ? "group" : "img", contents);
 }
 
 std::string text_at(double x_px, double y_px, std::string_view text, std::string_view classes) {
@@ -42,7 +46,7 @@ std::string end_of(std::string_view text, double width_px) {
 }
 
 std::string linked(std::string svg, std::string_view link) {
-  return link.empty() ? svg : fmt::format("<a href=\"{}\">{}</a>", escaped(link), svg);
+  return link.empty() ? svg : fmt::format("{}\"{}\">{}</a>", kLink, escaped(link), svg);
 }
 
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,

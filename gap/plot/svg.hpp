@@ -8,8 +8,10 @@
 
 namespace kenaf::gap::plot {
 
-// Returns the opening tag of a chart with its title at the left; "</svg>" closes it.
-std::string svg_begin(std::string_view title, double width_px, double height_px, double title_x_px = 0);
+// Returns a chart with its title at the left. To a screen reader it is a picture; with links, whose text a picture
+// would hide, a group.
+std::string svg_chart(std::string_view title, double width_px, double height_px, std::string_view contents,
+                      double title_x_px = 0);
 
 // Returns escaped text whose baseline begins at a point (with class "middle": is centred there, "end": ends there);
 // empty for empty text.

@@ -109,6 +109,10 @@ class Browser:
     def key(self, code, down):
         self.call('Input.dispatchKeyEvent', type='rawKeyDown' if down else 'keyUp', code=code, key=code)
 
+    def press(self, code):
+        self.key(code, True)
+        self.key(code, False)
+
     def evaluate(self, expression):
         """What the expression is worth; a promise is waited for. Raises where it throws."""
         answer = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)

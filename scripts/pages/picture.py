@@ -19,6 +19,7 @@ def picture_of_live_view(build, png):
         browser.open(url)
         browser.wait_for("document.getElementById('link')?.dataset.state === 'good'")
         browser.evaluate("document.getElementById('place').click()")
+        browser.press('Enter')  # at a free start
         browser.wait_for("document.getElementById('drive-state').dataset.state === 'held'")
         for code, until in ('Digit3', "/^4[45]/.test(reading('Angles'))"), ('KeyW', "Number(reading('Travel').split(',')[0]) > 0.45"):
             browser.key(code, True)

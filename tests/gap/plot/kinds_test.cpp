@@ -107,6 +107,8 @@ TEST_CASE("Strips share their axis, a name without room is still found under the
   const std::string linked = to_svg(chart);
   CHECK(fault_of_xml(linked).empty());
   CHECK_THAT(linked, Catch::Contains("<a href=\"#a&amp;b\"><rect"));
+  // links inside a picture would not be there for a screen reader
+  CHECK_THAT(linked, Catch::Contains("role=\"group\"") && !Catch::Contains("role=\"img\""));
 }
 
 TEST_CASE("Names of strips get the room that they need, up to half of the chart, then their ends are shown") {
