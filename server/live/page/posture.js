@@ -16,7 +16,7 @@ function leaning(positive, negative, neither, angle_deg) {
 }
 
 export function createPosture() {
-  const side = document.getElementById("side"), back = document.getElementById("back");
+  const [side, back, pitched, rolled] = ["side", "back", "pitched", "rolled"].map((id) => document.getElementById(id));
   let drawn = 0, parts = null;
 
   function draw(about) {
@@ -39,14 +39,13 @@ export function createPosture() {
       }
     }
     const arms = about.flipper ? [0, 2].filter((i) => about.flipper.has[i]).map((i) => add(front, "line", { class: "arm", "stroke-width": 1.5 * about.flipper.tip_radius * scale, "data-arm": i })) : [];
-    const labels = [side, back].map((svg) => add(svg, "text", { x: -58, y: 42 }));
-    parts = { front, rear, arms, labels, scale };
+    parts = { front, rear, arms, scale };
   }
 
   return {
     update(robot) {
       if (!robot?.now) {
-        if (drawn) { side.replaceChildren(); back.replaceChildren(); drawn = 0; }
+        if (drawn) { for (const element of [side, back, pitched, rolled]) element.replaceChildren(); drawn = 0; }
         return;
       }
       const { about, now } = robot;
@@ -54,8 +53,8 @@ export function createPosture() {
       const { roll, pitch } = angles(now.q);
       parts.front.setAttribute("transform", `rotate(${-pitch})`);
       parts.rear.setAttribute("transform", `rotate(${roll})`);
-      parts.labels[0].textContent = leaning("nose down", "nose up", "pitch", pitch);
-      parts.labels[1].textContent = leaning("right down", "left down", "roll", roll);
+      pitched.textContent = leaning("nose down", "nose up", "pitch", pitch);
+      rolled.textContent = leaning("right down", "left down", "roll", roll);
       parts.arms.forEach((arm) => {
         const i = Number(arm.dataset.arm);
         const { length, at } = about.flipper, angle = now.flipper[i], outward = i === 0 ? -1 : 1;
