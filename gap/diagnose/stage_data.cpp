@@ -98,8 +98,9 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     // so are start poses and counts; the simulator's numbers are the same in all runs, except for nonlinear effects:
     // only these remain against a baseline
     const std::size_t any = group.runs.front();
-    const MatrixXd local = mean_over_runs(group, shapes_of_run(floor.open[any]).cols(), used,
-                                          [&](std::size_t r) { return shapes_of_run(floor.open[r]); });
+    const Index local_shapes = floor.open[any].local.cols() + floor.open[any].ways.cols();
+    const MatrixXd local =
+        mean_over_runs(group, local_shapes, used, [&](std::size_t r) { return shapes_of_run(floor.open[r]); });
     group.shared_shapes = mean_over_runs(group, floor.open[any].numerics.cols(), used,
                                          [&](std::size_t r) -> const MatrixXd& { return floor.open[r].numerics; });
     group.local_shapes.resize(local.rows(), local.cols() + group.shared_shapes.cols());

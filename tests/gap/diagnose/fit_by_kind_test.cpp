@@ -9,20 +9,14 @@
 
 using namespace kenaf::gap::diagnose;
 using kenaf::test::LinearWorld;
+using kenaf::test::position;
 using kenaf::test::Whole;
 using kenaf::test::world;
-using kenaf::test::WorldChannel;
+using kenaf::test::yaw;
 
 namespace {
 
 constexpr double kBinsOfKind = 24, kBorneOut = 9;
-
-Whole position(double length) {
-  return world().in_channel(WorldChannel::x, length);
-}
-Whole yaw(double length) {
-  return world().in_channel(WorldChannel::yaw, length);
-}
 
 // Orthogonal to yaw() in the same channel: the sign changes from bin to bin.
 Whole trembling_yaw(double length) {

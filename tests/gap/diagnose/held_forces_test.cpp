@@ -13,8 +13,9 @@ namespace {
 
 // 2 s of a robot that holds 1.5 A until it moves, and needs 0.5 A then.
 StageFeatures held_until(double moves_s) {
-  const auto run = test::made_run(2, 0.125, {{"flipper_rl_a", [&](double t_s) { return t_s < moves_s ? 1.5 : 0.5; }},
-                                             {"battery_v", [](double) { return 24.0; }}});
+  const auto run = test::made_run(2, 0.125,
+                                  {{"flipper_rl_a", [&](double t_s) { return t_s < moves_s ? 1.5 : 0.5; }},
+                                   {"battery_v", [](double) { return 24.0; }}});
   StageFeatures features = stage_features(Passage::command_to_drive, FeatureMap(run, 0.25), run);
   features.at_rest_s = moves_s;
   return features;

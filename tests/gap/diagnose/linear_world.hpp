@@ -237,4 +237,12 @@ inline const LinearWorld& world() {
   return world;
 }
 
+// Shifts of one kind of channels in the whole world, of a length in noise.
+inline Whole position(double length) {
+  return world().in_channel(WorldChannel::x, length);
+}
+inline Whole yaw(double length) {
+  return world().in_channel(WorldChannel::yaw, length);
+}
+
 }  // namespace kenaf::test

@@ -10,18 +10,12 @@
 
 using namespace kenaf::gap::diagnose;
 using kenaf::test::LinearWorld;
+using kenaf::test::position;
 using kenaf::test::Whole;
 using kenaf::test::world;
-using kenaf::test::WorldChannel;
+using kenaf::test::yaw;
 
 namespace {
-
-Whole position(double length) {
-  return world().in_channel(WorldChannel::x, length);
-}
-Whole yaw(double length) {
-  return world().in_channel(WorldChannel::yaw, length);
-}
 
 Eigen::MatrixXd products(const std::vector<Whole>& effects, const std::vector<std::size_t>& model) {
   Whole gap = Whole::Zero(world().bins());
