@@ -22,6 +22,11 @@ bool is_misfit_of_one(Doubt doubt) {
   return doubt == Doubt::disagreement || doubt == Doubt::trend || is_misfit_of_kinds(doubt);
 }
 
+// Doubts that the model's other effects may have caused.
+bool depends_on_others(Doubt doubt) {
+  return doubt == Doubt::negligible || doubt == Doubt::little_explained || is_misfit_of_kinds(doubt);
+}
+
 // Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
 bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettings& settings) {
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
@@ -211,9 +216,6 @@ std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
 }
 
 std::vector<std::size_t> places_to_try(const StageDecision& decision) {
-  constexpr auto depends_on_others = [](Doubt doubt) {
-    return doubt == Doubt::negligible || doubt == Doubt::little_explained || is_misfit_of_kinds(doubt);
-  };
   return places_where(decision,
                       [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, depends_on_others); });
 }
