@@ -19,7 +19,7 @@ import argparse, asyncio, base64, bisect, contextlib, json, os, pathlib, socket,
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'scripts/pages'))
 from browser import Browser, end_on_request
-from served import ROOT, live_server
+from served import ROOT, live_server, place_robot
 
 REST_LIMIT_MS, AGE_LIMIT_MS, COST_LIMIT_CORES = 150, 10, 0.17
 AGES_FOR_S = 10
@@ -149,7 +149,7 @@ def open_page(browser, port):
     browser.open(f'http://127.0.0.1:{port}/')
     browser.wait_for("document.getElementById('link')?.dataset.state === 'good'")
     browser.evaluate(NOTES)
-    browser.evaluate("document.getElementById('place').click()")
+    place_robot(browser)
     browser.wait_for("document.getElementById('drive-state').dataset.state === 'held'")
     browser.wait_for("document.querySelectorAll('#pictures img').length === 2 && "
                      "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth)")

@@ -16,7 +16,7 @@ import argparse, collections, contextlib, dataclasses, fnmatch, pathlib, shutil,
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / 'pages'))
 from browser import Browser, end_on_request
-from served import ROOT, environment, live_view, playback
+from served import ROOT, environment, live_view, place_robot, playback
 
 OUT = ROOT / 'build/pages'
 AXE = '4.14.1'
@@ -74,8 +74,7 @@ def place(robots):
         connected(browser)
         for robot in range(robots):
             browser.wait_for("!document.getElementById('place').disabled")
-            browser.evaluate("document.getElementById('place').click()")
-            browser.press('Enter')  # nowhere in particular
+            place_robot(browser)
             browser.wait_for(f"document.getElementById('robot').options.length === {robot + 1}")
             browser.wait_for(HOLDS)
     return placed

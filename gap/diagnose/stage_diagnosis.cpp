@@ -249,8 +249,8 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     if (places_with_name(alone.decision).size() >= at_least_names) stage = std::move(alone);
   };
   const std::size_t names = places_with_name(stage.decision).size();
-  if (places_to_try(stage.decision) != places_to_keep(stage.decision))
-    with_alone(places_to_try(stage.decision), names + 1);
+  if (const std::vector<std::size_t> tried = places_to_try(stage.decision); tried != places_to_keep(stage.decision))
+    with_alone(tried, names + 1);
 
   // only effects with a name and their look-alikes, unless the named ones need the others to be significant
   if (const std::size_t named = places_with_name(stage.decision).size(); named > 0)

@@ -8,7 +8,7 @@
 import pathlib, re, sys
 
 from browser import Browser, end_on_request
-from served import environment, live_view, playback
+from served import environment, live_view, place_robot, playback
 from terminal import Terminal
 
 
@@ -18,8 +18,7 @@ def picture_of_live_view(build, png):
         browser.resize(1280, 800)
         browser.open(url)
         browser.wait_for("document.getElementById('link')?.dataset.state === 'good'")
-        browser.evaluate("document.getElementById('place').click()")
-        browser.press('Enter')  # at a free start
+        place_robot(browser)
         browser.wait_for("document.getElementById('drive-state').dataset.state === 'held'")
         for code, until in ('Digit3', "/^4[45]/.test(reading('Angles'))"), ('KeyW', "Number(reading('Travel').split(',')[0]) > 0.45"):
             browser.key(code, True)

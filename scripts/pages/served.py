@@ -44,6 +44,12 @@ def live_view(build, world):
         yield url
 
 
+def place_robot(browser):
+    """Asks an open live view for a robot at a free start: Enter places it where no place was pointed at."""
+    browser.evaluate("document.getElementById('place').click()")
+    browser.press('Enter')
+
+
 @contextlib.contextmanager
 def playback(build, runs, report, run=None):
     """The address of a page that plays the runs beside their simulations."""

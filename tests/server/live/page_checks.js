@@ -99,7 +99,7 @@
       return ratio < 4.5 ? `${name(e)} ${ratio.toFixed(2)}` : "";
     }).filter(Boolean);
   // A heading that receives the focus of its dialog is no control.
-  const controls = () => [...document.querySelectorAll("button, select, input, [tabindex]:not(h2)")].filter(seen);
+  const controls = () => [...document.querySelectorAll("button, select, input, [tabindex]:not(h2[tabindex='-1'])")].filter(seen);
   window.nameless = () => controls().filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).map(name);
   window.small = () => controls().filter((e) => !e.matches("input") && (e.getBoundingClientRect().width < 24 || e.getBoundingClientRect().height < 24)).map(name);
 
