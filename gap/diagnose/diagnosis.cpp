@@ -197,7 +197,9 @@ void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<Prep
                      Predictor& predictor, const StageOptions& options) {
   double numbers_off = 0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    const double own = stages[s].decision.best.model.likelihood.discrepancies.numbers_off;
+    const StageDecision& decision = stages[s].decision;
+    const double own = numbers_off_of_intervals(decision.data, rest_of(decision.data, decision.best.model),
+                                                decision.best.model.likelihood.discrepancies);
     numbers_off = stages[s].passage == Passage::body_to_sensor ? std::max(own, numbers_off) : own;
     widen_intervals(stages[s], prepared[s], predictor, numbers_off, options);
   }

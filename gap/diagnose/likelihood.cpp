@@ -24,6 +24,7 @@ constexpr double kNoShape = 1e-3;
 // section over the logarithm, to 3 %.
 constexpr double kLeastOff = 1e-4, kMostOff = 0.025;
 constexpr int kSectionsOfOff = 11;
+constexpr int kSizesOfOff = 48;  // of a posterior, equally spaced in the logarithm: 12 % apart
 // Limit of the length of the vector of all errors: twelve errors of kMostOff exceed it once in a thousand times.
 constexpr double kFarthestOff = 0.143;
 // A larger error is no small error (DecisionSettings::ordinary).
@@ -107,17 +108,22 @@ double most_likely_numbers_off(const SharedProducts& whole, Index numbers) {
   return least < deviance(0) ? std::exp(log_off) : 0;
 }
 
-// Reduces `off` until the length of all numbers' errors is within kFarthestOff: an error of a half is no member of a
-// population of small errors.
+// Whether the length of all numbers' errors is within kFarthestOff: an error of a half is no member of a population of
+// small errors.
+bool is_within_reach(double off, const Amounts& amounts, Index numbers) {
+  return off * amounts.most_likely.tail(numbers).norm() <= kFarthestOff;
+}
+
+// Reduces `off` until that holds.
 double within_reach(const SharedProducts& whole, Index numbers, double off) {
-  const auto reach = [&](double at) {
-    return at * amounts_of(with_numbers_off(whole, numbers, at)).most_likely.tail(numbers).norm();
+  const auto reaches = [&](double at) {
+    return is_within_reach(at, amounts_of(with_numbers_off(whole, numbers, at)), numbers);
   };
-  if (off == 0 || reach(off) <= kFarthestOff) return off;
+  if (off == 0 || reaches(off)) return off;
   double within = std::log(kNoneOff), beyond = std::log(off);
   for (int i = 0; i < kHalvingsOfOff; ++i) {
     const double middle = (within + beyond) / 2;
-    (reach(std::exp(middle)) <= kFarthestOff ? within : beyond) = middle;
+    (reaches(std::exp(middle)) ? within : beyond) = middle;
   }
   return std::exp(within);
 }
@@ -321,6 +327,27 @@ VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual
   if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);
   const VectorXd sigmas = most_likely_amounts(whiteners_of(data, discrepancies), residual).tail(numbers);
   return discrepancies.numbers_off * sigmas.cwiseMax(-kOrdinary_sigma).cwiseMin(kOrdinary_sigma);
+}
+
+double numbers_off_of_intervals(const StageData& data, const GroupVectors& residual, const Discrepancies& most_likely) {
+  if (most_likely.numbers_off == 0) return 0;
+  const Index numbers = data.groups.front().number_shapes.cols();
+  Discrepancies whole_errors = most_likely;
+  whole_errors.numbers_off = 1;
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, whole_errors);
+  const SharedProducts whole = shared_products(whiteners, whitened(whiteners, residual));
+
+  // sizes are equally spaced in the logarithm, so a uniform prior gives each a weight like its size
+  const double least = amounts_of(with_numbers_off(whole, numbers, most_likely.numbers_off)).deviance();
+  double weights = 0, squares = 0;
+  for (int i = 0; i <= kSizesOfOff; ++i) {
+    const double off = kLeastOff * std::pow(kMostOff / kLeastOff, static_cast<double>(i) / kSizesOfOff);
+    const Amounts amounts = amounts_of(with_numbers_off(whole, numbers, off));
+    if (!is_within_reach(off, amounts, numbers)) break;
+    const double weight = off * std::exp((least - amounts.deviance()) / 2);
+    weights += weight, squares += weight * off * off;
+  }
+  return weights > 0 ? std::max(most_likely.numbers_off, std::sqrt(squares / weights)) : most_likely.numbers_off;
 }
 
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,

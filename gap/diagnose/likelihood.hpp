@@ -93,6 +93,12 @@ GroupVectors without_open_shapes(const StageData& data, const GroupVectors& resi
 Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual,
                                     const Discrepancies& discrepancies);
 
+// Returns the size of errors of the description's numbers that intervals allow for, 1 sigma as a fraction: the root
+// mean square of Discrepancies::numbers_off over its posterior, with the prior of a standard deviation, uniform up to
+// 0.025 (Gelman 2006, Bayesian Analysis 1, 515); at least the most likely size. So few numbers show in a stage that the
+// most likely size is often half the true one. 0 where that is 0.
+double numbers_off_of_intervals(const StageData& data, const GroupVectors& residual, const Discrepancies& most_likely);
+
 // The deviance by group, for tests between models (Vuong 1989), with shared shapes at their most likely amounts.
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,
                                        const Discrepancies& discrepancies);

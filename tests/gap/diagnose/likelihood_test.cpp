@@ -242,6 +242,27 @@ TEST_CASE("How far numbers are off is found, and takes what they do out of the d
   CHECK(likelihood_of(exact, residuals_in(exact), no_discrepancy()).discrepancies.numbers_off < 0.002);
 }
 
+TEST_CASE("Intervals allow for a size of the numbers' errors that so few numbers tell badly") {
+  // 12 numbers off by +-0.5 %, each known to 0.1 %: with S = 12 0.005^2 the likelihood of their sigma is
+  // sigma^-12 exp(-S / (2 sigma^2)), largest at sigma^2 = S / 12. With a uniform prior its mean of sigma^2 is S / 9, as
+  // the integral of sigma^-m exp(-S / (2 sigma^2)) goes as S^((1 - m) / 2) Gamma((m - 1) / 2).
+  const LinearWorld world({4, 2, 20});
+  Whole gap = world.noise(1);
+  for (Index i = 0; i < 12; ++i) gap += 1000 * (i % 2 == 0 ? 0.005 : -0.005) * world.direction(i);
+  const StageData data = with_numbers(world, gap);
+  const GroupVectors residual = residuals_in(data);
+  const Discrepancies found = likelihood_of(data, residual, no_discrepancy()).discrepancies;
+  CHECK(found.numbers_off == Approx(0.005).epsilon(0.15));
+  CHECK(numbers_off_of_intervals(data, residual, found) / found.numbers_off ==
+        Approx(std::sqrt(12.0 / 9)).epsilon(0.05));
+
+  // a number off by a half reaches the limit of small errors: no larger size is allowed for
+  const StageData half = with_numbers(world, world.noise(1) + 1000 * 0.5 * world.direction(0));
+  const Discrepancies limited = likelihood_of(half, residuals_in(half), no_discrepancy()).discrepancies;
+  CHECK(numbers_off_of_intervals(half, residuals_in(half), limited) == Approx(limited.numbers_off).epsilon(0.2));
+  CHECK(numbers_off_of_intervals(data, residual, no_discrepancy()) == 0);
+}
+
 TEST_CASE("A number that is off by a half is none of many that are a little off: it is left to the discrepancy") {
   // 500 in noise, all over 4 x 4 x 20 cells of 8 bins: 500 / sqrt(2560) = 10 in each bin. The numbers may take 14.3 %
   // off by 50 %, so 7 are left. A number then shifts by S = 1000 / 7 sigma, and takes rho^2 S^2 / (1 + rho^2 S^2) of
