@@ -51,9 +51,11 @@ Size CaseScale::size_of(const Differences& shifts) const {
 }
 
 Size CaseScale::size_of(const physics::Effects& effects) {
-  physics::RobotDescription robot = robot_;
-  robot.effects = effects;
-  return size_of(shift_of(robot));
+  return size_of(shift_of(effects));
+}
+
+Size CaseScale::size_beside(const physics::Effects& others, const physics::Effects& effects) {
+  return size_of(shift_of(effects) - shift_of(others));
 }
 
 Size CaseScale::size_of_number(const std::string& key, double value) {
@@ -73,6 +75,12 @@ LookAlike CaseScale::look_alike_of(const CasePlan& plan) {
 
 Differences CaseScale::shift_of(const physics::RobotDescription& robot) {
   return shifts_of(runs_, robot, diagnose::Fidelity::coarse) - background_;
+}
+
+Differences CaseScale::shift_of(const physics::Effects& effects) {
+  physics::RobotDescription robot = robot_;
+  robot.effects = effects;
+  return shift_of(robot);
 }
 
 // The shift in each stage's own replay. In a replay of measured belts and flippers commands play no part.

@@ -28,6 +28,8 @@ class CaseScale {
   double background_floors() const { return background_floors_; }
   // Sizes of effects, a number or a deviation on the robot of the background.
   Size size_of(const physics::Effects& effects);
+  // What `effects` add to `others`, which are a part of them.
+  Size size_beside(const physics::Effects& others, const physics::Effects& effects);
   Size size_of_number(const std::string& key, double value);
   Size size_of_foreign(const std::string& foreign, double amount);
   // The look-alike of the plan's effect outside the catalogue.
@@ -35,8 +37,9 @@ class CaseScale {
 
  private:
   Size size_of(const Differences& shifts) const;
-  // Shift of a robot that has the background and the hidden effect, less the background's.
+  // Shift of a robot that has the background and the hidden effects, less the background's.
   Differences shift_of(const physics::RobotDescription& robot);
+  Differences shift_of(const physics::Effects& effects);
   Differences shift_of_foreign(const std::string& foreign, double amount);
 
   unsigned jobs_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -80,10 +81,14 @@ Sized sized(double planned, double neutral, double smallest_share, bool upward_f
   return best;
 }
 
+double planned_size(const CasePlan& plan, const HiddenEffect& hidden) {
+  return plan.is_sized_by_background() ? hidden.times_background : hidden.floors;
+}
+
 // Sets value and size of an effect; returns reached size / planned size.
 double size_effect(const CasePlan& plan, HiddenEffect& hidden, CaseScale& scale, bool upward_first) {
   const physics::EffectParameter& parameter = parameter_of(hidden);
-  const double planned = plan.is_sized_by_background() ? hidden.times_background : hidden.floors;
+  const double planned = planned_size(plan, hidden);
   const auto size_at = [&](double value) {
     physics::Effects effects;
     effects.*parameter.value = value;
@@ -101,7 +106,26 @@ double size_effect(const CasePlan& plan, HiddenEffect& hidden, CaseScale& scale,
   return result.of_planned;
 }
 
-// Likewise for the hidden number of the description.
+// Sets the size of each effect to what it adds beside the others, which may hide it: drives that follow a ramp never
+// reach their largest force. Returns the least reached size / planned size.
+double size_beside_others(const CasePlan& planned, CasePlan& plan, CaseScale& scale) {
+  double reached = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < plan.effects.size(); ++i) {
+    HiddenEffect& hidden = plan.effects[i];
+    physics::Effects effects, others;
+    for (const HiddenEffect& each : plan.effects) {
+      effects.*parameter_of(each).value = each.value;
+      if (&each != &hidden) others.*parameter_of(each).value = each.value;
+    }
+    const Size size = scale.size_beside(others, effects);
+    hidden.floors = size.floors;
+    hidden.times_background = size.times_background;
+    reached = std::min(reached, size.planned_as(plan) / planned_size(planned, planned.effects[i]));
+  }
+  return reached;
+}
+
+// Sets value and size of the hidden number of the description; returns reached size / planned size.
 double size_number(CasePlan& plan, CaseScale& scale, bool upward_first) {
   HiddenNumber& number = plan.number;
   const auto size_at = [&](double value) { return scale.size_of_number(number.key, value); };
@@ -150,6 +174,7 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     double reached = 1e9;
     for (HiddenEffect& hidden : candidate.effects)
       reached = std::min(reached, size_effect(candidate, hidden, scale, upward));
+    if (candidate.effects.size() > 1) reached = std::min(reached, size_beside_others(plan, candidate, scale));
     if (!plan.number.key.empty()) reached = size_number(candidate, scale, upward);
     if (!plan.foreign.empty()) reached = size_foreign(candidate, scale);
 

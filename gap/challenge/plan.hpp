@@ -51,7 +51,7 @@ struct StageShare {
 
 struct HiddenEffect {
   std::string effect, parameter;
-  double floors = 0;                 // size: the gap by it alone, over all channels, in noise floors
+  double floors = 0;                 // size: the gap that it adds to all others, over all channels, in noise floors
   double value = 0;                  // that gives this size; known once the case is made
   double times_background = 0;       // size relative to the background's, in the imperfect challenge
   std::vector<StageShare> shares{};  // in the stages that show it; known once the case is made

@@ -258,3 +258,18 @@ TEST_CASE("How long a solver iterates is no gap, also where tracks a thousandth 
     }
   }
 }
+
+TEST_CASE("Of a pair each effect is as large as asked beside the other one", "[long]") {
+  // one track that is slower and another one that reads too much: each shows whatever the other one does
+  const TemporaryFolder folder;
+  CasePlan plan;
+  plan.name = "case-007";
+  plan.stratum = Stratum::pair;
+  plan.effects = {{"drive_asymmetry", "ratio", 6}, {"encoder_scale", "scale", 4}};
+  plan.manoeuvres = {"straight"};
+  plan.unseen = "arc";
+  plan.seed = 3;
+  make_case(plan, folder / "case", 1);
+  CHECK(plan.effects[0].floors == Approx(6).epsilon(0.1));
+  CHECK(plan.effects[1].floors == Approx(4).epsilon(0.1));
+}
