@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "camera/wide_vectors.hpp"
+
 namespace kenaf::camera {
 
 namespace {
@@ -145,7 +147,7 @@ void add_edges(const Run& run, int count, Samples& samples) {
 }
 
 // Colour = (light in the shade + sunlight * facing) * texture, faded into the horizon; chunk by chunk.
-void shade_face(const Run& run, const Pattern& pattern, int first, int end, std::uint8_t* rgb) {
+KENAF_WIDE_VECTORS void shade_face(const Run& run, const Pattern& pattern, int first, int end, std::uint8_t* rgb) {
   Samples samples;
   Colours colours;
   for (; first < end; first += kChunk) {
@@ -164,7 +166,7 @@ void shade_face(const Run& run, const Pattern& pattern, int first, int end, std:
   }
 }
 
-void shade_sky(const RayBasis& basis, float v, int first, int end, std::uint8_t* rgb) {
+KENAF_WIDE_VECTORS void shade_sky(const RayBasis& basis, float v, int first, int end, std::uint8_t* rgb) {
   const Eigen::Vector3f row = (basis.at_0 + 0.5 * basis.per_u + v * basis.per_v).cast<float>();
   const Eigen::Vector3f per_u = basis.per_u.cast<float>();
   Colours colours;

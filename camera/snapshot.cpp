@@ -1,6 +1,7 @@
 #include "camera/snapshot.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kenaf::camera {
 
@@ -22,7 +23,31 @@ void take_robot(const physics::World& world, physics::RobotId id, RobotSnapshot&
   }
 }
 
+constexpr double kStill = 1e-5;  // m or rad
+
+bool is_near(double a, double b) {
+  return std::abs(a - b) <= kStill;
+}
+bool near_pose(const physics::Pose& a, const physics::Pose& b) {
+  return (a.p - b.p).norm() <= kStill && a.q.angularDistance(b.q) <= kStill;
+}
+bool near_robot(const RobotSnapshot& a, const RobotSnapshot& b) {
+  const auto near_links = [](const auto& links_a, const auto& links_b) {
+    return std::ranges::equal(links_a, links_b, is_near);
+  };
+  return a.id == b.id && near_pose(a.X_WB, b.X_WB) && std::ranges::equal(a.flipper_rad, b.flipper_rad, is_near) &&
+         std::ranges::equal(a.track_m, b.track_m, is_near) &&
+         std::ranges::equal(a.mission_link_rad, b.mission_link_rad, near_links);
+}
+bool near_box(const BoxSnapshot& a, const BoxSnapshot& b) {
+  return a.id == b.id && a.size_m == b.size_m && near_pose(a.X_WBox, b.X_WBox);
+}
+
 }  // namespace
+
+bool look_alike(const WorldSnapshot& a, const WorldSnapshot& b) {
+  return std::ranges::equal(a.robots, b.robots, near_robot) && std::ranges::equal(a.boxes, b.boxes, near_box);
+}
 
 void SnapshotTaker::take(const physics::World& world, WorldSnapshot& out) {
   out.time_s = world.time_s();

@@ -98,6 +98,10 @@ struct Feed::Implementation {
     double rate_hz = 0;
     bool wanted = false, faulty = false;
     bool left_out = false;  // the last exposure, because it was late
+    // The last image, null: none; and what it shows.
+    std::shared_ptr<const CameraImage> image;
+    camera::WorldSnapshot world;
+    double field_of_view_rad = 0;
   };
   struct Waiting {
     Clock::time_point until;
@@ -224,6 +228,7 @@ void Feed::Implementation::settle_views(const Exposure& exposure) {
     if (camera.wanted) continue;
     // its number is kept, so that no reader sees it twice
     camera.renderer.reset();
+    camera.image.reset();
     camera.last.reset();
     camera.faulty = false;
   }
@@ -269,9 +274,17 @@ FramePtr Feed::Implementation::draw_one(const Exposure& exposure, std::size_t ro
   frame->robot_time_s = exposure.world.time_s;
   frame->exposed = exposure.wall;
   const double field_of_view_rad = exposure.field_of_view_rad[robot_index][camera_index];
-  state.renderer->render(*scene, camera::camera_view(robot, camera, field_of_view_rad), frame->picture);
-  const auto jpeg = encoder.encode(frame->picture, camera.jpeg_quality);
-  frame->jpeg.assign(jpeg.begin(), jpeg.end());
+  // what looks as before is not drawn again: most robots stand most of the time
+  if (!state.image || state.field_of_view_rad != field_of_view_rad || !look_alike(state.world, exposure.world)) {
+    const auto image = std::make_shared<CameraImage>();
+    state.renderer->render(*scene, camera::camera_view(robot, camera, field_of_view_rad), image->picture);
+    const auto jpeg = encoder.encode(image->picture, camera.jpeg_quality);
+    image->jpeg.assign(jpeg.begin(), jpeg.end());
+    state.image = image;
+    state.world = exposure.world;
+    state.field_of_view_rad = field_of_view_rad;
+  }
+  frame->image = state.image;
   return frame;
 }
 

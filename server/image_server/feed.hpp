@@ -3,7 +3,8 @@
 // A reader requests a view by its name (view_name.hpp) whenever it wants to see it, and is notified of new frames.
 // Views that were not requested for kWanted_s are not drawn; without any, the world is not asked either, and the thread
 // sleeps. At each exposure (exposure.hpp) the world's thread hands over a snapshot, which takes microseconds; the scene
-// is then updated once for all cameras that expose together.
+// is then updated once for all cameras that expose together. Where nothing has moved since a camera's last picture
+// (camera::look_alike), the frame has that picture again.
 //
 // A frame is published once its camera's latency has passed, in robot time: at twice the speed after half of it. If
 // time is stopped or runs as fast as possible, it is published as soon as it is drawn. Speed 0: at most rate_hz

@@ -25,14 +25,19 @@ struct CameraId {
   auto operator<=>(const CameraId&) const = default;
 };
 
+// What a camera sees, and its JPEG at the camera's own quality.
+struct CameraImage {
+  camera::Picture picture;
+  std::vector<std::uint8_t> jpeg;
+};
+
 struct Frame {
   CameraId id;
-  std::string robot, camera;  // their names
-  std::uint64_t number = 0;   // of this camera, from 1; a gap counts the pictures not drawn in time
-  double robot_time_s = 0;    // of the moment shown
-  SteadyTime exposed;         // the same moment on the wall clock
-  camera::Picture picture;
-  std::vector<std::uint8_t> jpeg;  // at the camera's own quality
+  std::string robot, camera;                 // their names
+  std::uint64_t number = 0;                  // of this camera, from 1; a gap counts the pictures not drawn in time
+  double robot_time_s = 0;                   // of the moment shown
+  SteadyTime exposed;                        // the same moment on the wall clock
+  std::shared_ptr<const CameraImage> image;  // never null; that of the frame before if nothing has moved since
 };
 
 // Returns the age of the moment shown.

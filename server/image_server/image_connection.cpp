@@ -148,7 +148,7 @@ void ImageConnection::answer(const FramePtr& frame) {
 
   // A part: raw pixels, cut out for this client alone.
   if (request_->kind == ImageRequest::Kind::part) {
-    auto part = raw_picture(frame->picture, request_->x, request_->y, request_->width, request_->height);
+    auto part = raw_picture(frame->image->picture, request_->x, request_->y, request_->width, request_->height);
     if (part.empty()) return send_words("that part lies outside the picture");
     made_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(part));
     out_ = {asio::const_buffer(), asio::const_buffer(), asio::buffer(*made_)};
@@ -166,7 +166,7 @@ void ImageConnection::answer(const FramePtr& frame) {
 
   // JPEG: the frame's own, or one of another quality encoded once for all clients. Its start is replaced by one with
   // the frame note, whose age is that of this moment.
-  std::span<const std::uint8_t> jpeg = frame->jpeg;
+  std::span<const std::uint8_t> jpeg = frame->image->jpeg;
   if (type != ImageType::good) {
     made_ = desk_.make(frame);
     jpeg = *made_;
@@ -233,11 +233,11 @@ Bytes ImageDesk::make(const std::shared_ptr<const Frame>& frame) {
   Made& last = made[frame->id];
   if (last.frame == frame) return last.bytes;
   if (type == ImageType::raw) {
-    const camera::Picture& picture = frame->picture;
+    const camera::Picture& picture = frame->image->picture;
     last.bytes = std::make_shared<const std::vector<std::uint8_t>>(raw_picture(
         picture, 0, 0, static_cast<std::uint32_t>(picture.width), static_cast<std::uint32_t>(picture.height)));
   } else {
-    const auto jpeg = encoder.encode(frame->picture, jpeg_quality(type, 80));
+    const auto jpeg = encoder.encode(frame->image->picture, jpeg_quality(type, 80));
     last.bytes = std::make_shared<const std::vector<std::uint8_t>>(jpeg.begin(), jpeg.end());
   }
   last.frame = frame;  // not earlier: the code above may throw

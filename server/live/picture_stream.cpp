@@ -124,7 +124,7 @@ void PictureConnection::send(const FramePtr& frame) {
   frame_ = frame;
   const double age_s = image_server::age_s(*frame);
   const std::string start = image_server::stamped_start(*frame, age_s);
-  const auto rest = image_server::after_start(frame->jpeg);
+  const auto rest = image_server::after_start(frame->image->jpeg);
   const std::string about = fmt::format(
       "Content-Type: image/jpeg\r\nContent-Length: {}\r\nX-Frame-Number: {}\r\nX-Robot-Time: {:.6f}\r\nX-Age-Ms: "
       "{:.3f}\r\n",

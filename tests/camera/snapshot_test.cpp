@@ -2,6 +2,8 @@
 // after some came, went or moved. A robot with a fault stays where it last was whole.
 #include <catch2/catch.hpp>
 
+#include <functional>
+
 #include "tests/camera/scenes.hpp"
 
 using namespace kenaf;
@@ -80,4 +82,41 @@ TEST_CASE("A robot with a fault is shown where it last was whole") {
   // its hull, yellow, below the middle
   const std::uint8_t* rgb = above.at(320, 400);
   CHECK(rgb[0] > 2 * rgb[2]);
+}
+
+TEST_CASE("Two snapshots look alike unless something came, went, or moved by more than 10 um or 10 urad") {
+  physics::World world(level_ground(), {}, 1);
+  world.add_robot(physics::load_robot("kenaf"), "R1", pose(0, 0, 0.1));
+  const physics::BoxId box = world.add_box({"box", {1, 1, 1}, pose(5, 0, 0.5), 1, 0});
+  SnapshotTaker taker;
+  WorldSnapshot before;
+  taker.take(world, before);
+  WorldSnapshot after = before;
+  after.time_s += 1;
+  CHECK(look_alike(before, after));
+
+  // each part by less than the limit, and by more
+  const std::vector<std::function<void(double)>> moves{
+      [&](double by) { after.robots[0].X_WB.p.z() += by; },
+      [&](double by) {
+        after.robots[0].X_WB.q = after.robots[0].X_WB.q * Eigen::AngleAxisd(by, Eigen::Vector3d::UnitX());
+      },
+      [&](double by) { after.robots[0].flipper_rad[3] += by; },
+      [&](double by) { after.robots[0].track_m[1] -= by; },
+      [&](double by) { after.robots[0].mission_link_rad[0][1] += by; },
+      [&](double by) { after.boxes[0].X_WBox.p.x() -= by; },
+  };
+  for (const auto& move : moves) {
+    after = before;
+    move(0.9e-5);
+    CHECK(look_alike(before, after));
+    after = before;
+    move(1.1e-5);
+    CHECK_FALSE(look_alike(before, after));
+  }
+
+  world.remove_box(box);
+  taker.take(world, after);
+  CHECK_FALSE(look_alike(before, after));
+  CHECK_FALSE(look_alike(after, before));
 }

@@ -55,8 +55,8 @@ TEST_CASE("Frames are of whole thirtieths of robot time, counted, and published 
   FramePtr frame = next_frame(world.feed, "R1/Camera");  // not always number 1: this thread may have looked late
   CHECK(frame->robot == "R1");
   CHECK(frame->camera == "Camera");
-  CHECK(frame->picture.width == 640);
-  CHECK(frame->picture.height == 480);
+  CHECK(frame->image->picture.width == 640);
+  CHECK(frame->image->picture.height == 480);
   FramePtr last = next_frame(world.feed, "R1/Camera", frame);  // the first was taken when it was asked for
   for (int i = 0; i < 5; ++i) {
     frame = next_frame(world.feed, "R1/Camera", last);
@@ -107,6 +107,27 @@ TEST_CASE("Nothing is drawn while nobody looks, nor 2 s after the last look") {
   const FramePtr again = next_frame(world.feed, "");
   CHECK(again->number > frame->number);
   CHECK(again->robot_time_s > frame->robot_time_s + 1);
+}
+
+TEST_CASE("What has not moved is not drawn again, and whatever moves is") {
+  CameraWorld world;
+  Robot robot(world, "R1");
+  FramePtr last = next_frame(world.feed, "R1/Camera");
+  const auto next = [&] { return last = next_frame(world.feed, "R1/Camera", last); };
+  // it falls onto its tracks, then stands
+  CHECK(support::eventually([&] {
+    const auto before = last->image;
+    return next()->image == before;
+  }));
+  const std::uint64_t number = last->number;
+  CHECK(next()->number > number);
+
+  const std::string order =
+      GENERATE("DRIVE {Left 1.5} {Right -1.5}", "DRIVE {Name FLFlipper} {Value 0.2}", "MULTIDRIVE {RRFlipper 0.2}",
+               "SET {Type Camera} {Name Camera} {Opcode FOV} {Params 0.8}");
+  const auto standing = last->image;
+  robot.client.send(order + "\r\n");
+  CHECK(support::eventually([&] { return next()->image != standing; }));
 }
 
 TEST_CASE("Listeners are notified of frames until they let go") {
