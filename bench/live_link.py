@@ -7,7 +7,8 @@
    order to stand in force, and the robot at rest (tracks below 0.01 m/s), less the round trip; whether the slow link raises the alarm; and by how much the age is wrong that the
    page gives to each camera picture. When a picture was exposed is known by its robot time: a second client, beside the
    network, notes when states say that the world had reached it.
-2. Without the network: CPU time of kenaf-world with the page and its two pictures open, and after they were closed.
+2. Without the network: CPU time of kenaf-world with the page and its two pictures open, while the robot stands and while
+   it turns in place, and after the page was closed.
 
 The browser draws no 3D: without a graphics card it would draw on the cores that the server needs. Other load on the
 machine changes CPU time little and the rest much: run it on an idle one.
@@ -223,15 +224,20 @@ def measure_cost(port, pid, seconds):
         began_s, cpu = time.monotonic(), cpu_s(pid)
         time.sleep(seconds)
         return (cpu_s(pid) - cpu) / (time.monotonic() - began_s)
+    is_good = True
     with Browser(WITHOUT_3D) as browser:
         open_page(browser, port)
-        pictures = browser.evaluate('bench.pictures')
-        with_page = cores()
-        pictures = browser.evaluate('bench.pictures') - pictures
+        for moves, key in ('stands', None), ('turns', 'KeyA'):
+            if key:
+                press(browser, key, True)
+                browser.wait_for('bench.speed_mps > 0.1')
+            pictures = browser.evaluate('bench.pictures')
+            with_page = cores()
+            report(f'pictures_a_second_robot_{moves}', (browser.evaluate('bench.pictures') - pictures) / seconds)
+            is_good &= report(f'server_cores_with_page_and_two_cameras_robot_{moves}', with_page, COST_LIMIT_CORES)
     time.sleep(4)  # a camera without a reader is drawn for 2 s more
-    report('pictures_a_second', pictures / seconds)
     report('server_cores_without_page', cores())
-    return report('server_cores_with_page_and_two_cameras', with_page, COST_LIMIT_CORES)
+    return is_good
 
 
 def main():

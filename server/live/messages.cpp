@@ -175,10 +175,10 @@ bool same_inventory(const WorldState& a, const WorldState& b) {
   return std::ranges::equal(a.robots, b.robots, same_id) && std::ranges::equal(a.boxes, b.boxes, same_id);
 }
 
-std::string state_message(const WorldState& state, std::uint64_t number, double reached, std::size_t viewers,
-                          std::span<const FrameAge> frames, const ShowRequest& shown) {
+std::string state_message(const WorldState& state, std::uint64_t number, double sent_s, double reached,
+                          std::size_t viewers, std::span<const FrameAge> frames, const ShowRequest& shown) {
   Writer out;
-  out.open('{').key("type").text("state").key("n").integer(number);
+  out.open('{').key("type").text("state").key("n").integer(number).key("sent").number(sent_s, 6);
   out.key("t").number(state.time_s).key("step").integer(state.step).key("paused").boolean(state.paused);
   if (state.paused) write_pauser(out, state.pauser);
   out.key("speed").number(state.speed, 3).key("reached").number(reached, 3).key("viewers").integer(viewers);

@@ -25,14 +25,15 @@ std::string inventory_message(const world_server::WorldState& state,
                               const std::optional<physics::RobotDimensions>& placeable = std::nullopt);
 // Returns whether the inventory of `a` is still valid for `b`.
 bool same_inventory(const world_server::WorldState& a, const world_server::WorldState& b);
-// The motion of everything. `number` counts the messages, `reached` is robot time per wall-clock time. `frames`: of all
-// cameras being viewed, by any page. `shown`: what it has on top, as far as `state` was read with it.
+// The motion of everything. `number` counts the messages, `sent_s` is the time on a clock that never jumps, `reached`
+// is robot time per wall-clock time. `frames`: of all cameras being viewed, by any page, with their ages at `sent_s`.
+// `shown`: what it has on top, as far as `state` was read with it.
 struct FrameAge {
   image_server::CameraId id;
   std::uint64_t number;
   double robot_time_s, age_s;
 };
-std::string state_message(const world_server::WorldState& state, std::uint64_t number, double reached,
+std::string state_message(const world_server::WorldState& state, std::uint64_t number, double sent_s, double reached,
                           std::size_t viewers, std::span<const FrameAge> frames = {}, const ShowRequest& shown = {});
 std::string refused_message(std::string_view request, std::string_view reason);
 std::string placed_message(std::uint32_t robot);

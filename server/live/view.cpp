@@ -162,21 +162,23 @@ void View::Implementation::show() {
     for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->tell(hub.inventory);
   }
   const double reached = speed.read(state.wall_s, state.time_s);
+  const auto now = std::chrono::steady_clock::now();
   std::vector<FrameAge> frames;
   if (hub.cameras != nullptr) {
     for (const auto& frame : hub.cameras->newest()) {
-      frames.push_back({frame->id, frame->number, frame->robot_time_s, image_server::age_s(*frame)});
+      frames.push_back({frame->id, frame->number, frame->robot_time_s, image_server::age_s(*frame, now)});
     }
   }
   // One message for all pages that show the same; as a rule that is one message.
   ++states;
+  const double sent_s = std::chrono::duration<double>(now.time_since_epoch()).count();
   std::vector<std::pair<ShowRequest, Message>> messages;
   for (std::size_t i = hub.viewers.size(); i-- > 0;) {
     const ShowRequest shown_there = hub.viewers[i]->shown();
     auto made = std::ranges::find(messages, shown_there, &std::pair<ShowRequest, Message>::first);
     if (made == messages.end()) {
       messages.emplace_back(shown_there, std::make_shared<const std::string>(state_message(
-                                             state, states, reached, hub.viewers.size(), frames, shown_there)));
+                                             state, states, sent_s, reached, hub.viewers.size(), frames, shown_there)));
       made = std::prev(messages.end());
     }
     hub.viewers[i]->show(made->second);

@@ -3,7 +3,7 @@ const PROTOCOL = 2;
 // A state comes 30 times a second, also while the world is paused. Silence is counted, not read off the clock: a page that was held
 // up itself has missed beats too, and has not read yet what came meanwhile.
 const BEAT_MS = 100, SILENT_BEATS = 6;
-const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6;
+const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6, RECENT_STATES = 128;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.
@@ -13,10 +13,11 @@ export function address(path) {
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.
 // `roundTrip_ms()`: from a word to its answer; null before the first. `way_ms()`: from the server to here, without what waited for this
-// page; 0 before it is known. `newestAge_ms()`: of the newest message, since it left the server.
+// page; 0 before it is known. `here_ms(t)`: when the server's time t, in s, was on this page's clock. `newestAge_ms()`: of the newest message, since it left the server.
 export function connect(listeners) {
-  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, way_ms, newestAge_ms };
+  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, way_ms, here_ms, newestAge_ms };
   let socket = null, answered_ms = null, unanswered = [], recent_ms = [];   // pings: how long the newest answered one took; when the others were sent
+  let apart_ms = [];   // of the last states: from the server's clock when sent to this page's when read
   let number = null, server = null, beats = 0;
 
   function send(message) {
@@ -32,6 +33,11 @@ export function connect(listeners) {
   // Half of the least of the last round trips: the others have waited, here or in a queue.
   function way_ms() {
     return recent_ms.length ? Math.min(...recent_ms) / 2 : 0;
+  }
+
+  // The least of the last: the other states have waited, here or in a queue.
+  function here_ms(t) {
+    return 1000 * t + Math.min(...apart_ms) - way_ms();
   }
 
   // Half of the round trip is taken for the way from the server.
@@ -62,6 +68,7 @@ export function connect(listeners) {
     if (message.type === "state") {
       if (number !== null && message.n > number + 1) link.dropped += message.n - number - 1;
       number = message.n;
+      apart_ms = [...apart_ms, link.received_ms - 1000 * message.sent].slice(-RECENT_STATES);
     }
     listeners[message.type]?.(message);
   }
@@ -69,6 +76,7 @@ export function connect(listeners) {
   function open() {
     number = null;
     unanswered = [];
+    apart_ms = [];
     socket = new WebSocket(address(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`));
     socket.onopen = () => { link.open = true; listeners.open(); };
     socket.onmessage = take;

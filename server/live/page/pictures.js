@@ -12,18 +12,18 @@ export function createPictures(world, link, chosen, bigView) {
   const section = document.getElementById("pictures");
   let started = false, shown = "", figures = [];
 
-  // When the camera saw the frame, by this page's clock, later by the way: by the states, which say when the server had it, and by its own
-  // stamp. The stamp is from when it was sent, so it lacks the time that the picture waited on its way; the earlier of the two is right.
-  function seen_ms(figure, part) {
-    return Math.min(performance.now() - part.age_ms, figure.seen.get(part.number) ?? Infinity);
-  }
+  // When the server's camera saw each frame, by the server's clock, as the states say.
   function note(figure, camera) {
-    if (camera?.n === undefined || figure.seen.has(camera.n)) return;
-    figure.seen.set(camera.n, performance.now() - 1000 * camera.age);
-    if (figure.seen.size > KEPT) figure.seen.delete(figure.seen.keys().next().value);
+    if (camera?.n === undefined || figure.seen_s.has(camera.n)) return;
+    figure.seen_s.set(camera.n, world.sent_s - camera.age);
+    if (figure.seen_s.size > KEPT) figure.seen_s.delete(figure.seen_s.keys().next().value);
   }
-  // With the way as it is known now: that of a page that has just been busy is corrected by the next answer.
-  const age_ms = (figure) => performance.now() - figure.seen_ms + link.way_ms();
+  // By the frame's own stamp until a state has told of it: that is from when it was sent, so it lacks the time that the picture waited on
+  // its way. With the way as it is known now: that of a page that has just been busy is corrected by the next answer.
+  function age_ms({ shown, seen_s }) {
+    const seen_ms = seen_s.has(shown.number) ? link.here_ms(seen_s.get(shown.number)) : shown.stamped_ms - link.way_ms();
+    return performance.now() - seen_ms;
+  }
 
   function show(figure, part) {
     figure.jpeg = new Blob([part.jpeg], { type: "image/jpeg" });
@@ -31,7 +31,7 @@ export function createPictures(world, link, chosen, bigView) {
     const { picture } = figure, before = picture.src;
     picture.src = url;
     if (before) URL.revokeObjectURL(before);
-    figure.seen_ms = seen_ms(figure, part);
+    figure.shown = { number: part.number, stamped_ms: performance.now() - part.age_ms };
   }
 
   async function read(figure) {
@@ -77,14 +77,14 @@ export function createPictures(world, link, chosen, bigView) {
       frame.dataset.camera = camera.name;
       frame.append(enlarge, caption);
       section.append(frame);
-      const figure = { camera: camera.name, picture, jpeg: null, age, ended: new AbortController(), seen: new Map(), seen_ms: null };
+      const figure = { camera: camera.name, picture, jpeg: null, age, ended: new AbortController(), seen_s: new Map(), shown: null };
       read(figure);
       return figure;
     });
     bigView.built([...section.children]);
   }
 
-  const ages_ms = () => figures.filter((figure) => figure.seen_ms !== null).map(age_ms);
+  const ages_ms = () => figures.filter(({ shown }) => shown).map(age_ms);
 
   function update() {
     const robot = chosen();
@@ -100,7 +100,7 @@ export function createPictures(world, link, chosen, bigView) {
     }
     figures.forEach((figure, i) => {
       note(figure, robot.now?.cameras?.[i]);
-      if (figure.seen_ms === null) return;
+      if (!figure.shown) return;
       const ms = age_ms(figure);
       figure.age.textContent = ms < 10000 ? `${ms.toFixed(0)} ms` : `${(ms / 1000).toFixed(0)} s`;
       figure.age.dataset.state = ms > OLD_MS && !world.paused ? "bad" : "good";

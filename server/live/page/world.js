@@ -1,6 +1,6 @@
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
 export function createWorld() {
-  return { you: 0, server: 0, name: "", operatorSilence_s: 0.5, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
+  return { you: 0, server: 0, name: "", operatorSilence_s: 0.5, sent_s: 0, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
            robots: new Map(), boxes: [], placeable: null };
 }
 
@@ -20,6 +20,7 @@ export function takeInventory(world, message) {
 }
 
 export function takeState(world, message) {
+  world.sent_s = message.sent;
   world.time_s = message.t;
   world.paused = message.paused;
   world.pausedBy = message.paused_by ?? null;

@@ -123,9 +123,10 @@ TEST_CASE("A state says how everything is, in numbers that JSON knows") {
   REQUIRE(world_server::place_robot_by_hand(simulation, world_server::OperatorId{7}, id).empty());
   world_server::WorldState state;
   world_server::read_state(simulation, state);
-  json message = json::parse(state_message(state, 12, 0.98765, 3));
+  json message = json::parse(state_message(state, 12, 86400.123456, 0.98765, 3));
   CHECK(message["type"] == "state");
   CHECK(message["n"] == 12);
+  CHECK(message["sent"] == 86400.123456);
   CHECK(message["reached"] == 0.988);
   CHECK(message["viewers"] == 3);
   CHECK(message["boxes"].size() == state.boxes.size());
@@ -141,13 +142,13 @@ TEST_CASE("A state says how everything is, in numbers that JSON knows") {
   state.robots[0].X_WB.p.x() = std::numeric_limits<double>::quiet_NaN();
   state.robots[0].fault = "it \"exploded\"\n\x80";
   state.robots[0].name = "</script>\"";
-  message = json::parse(state_message(state, 1, 0, 0));
+  message = json::parse(state_message(state, 1, 0, 0, 0));
   CHECK(message["robots"][0]["p"][0].is_null());
   CHECK(json::parse(inventory_message(state))["robots"][0]["name"] == "</script>\"");
 
   state.robots[0].flipper_rad[2] = std::numeric_limits<double>::quiet_NaN();
   state.robots[0].dimensions.has_flipper[2] = false;
-  CHECK(json::parse(state_message(state, 1, 0, 0))["robots"][0]["flipper"][2].is_null());
+  CHECK(json::parse(state_message(state, 1, 0, 0, 0))["robots"][0]["flipper"][2].is_null());
   CHECK(json::parse(inventory_message(state))["robots"][0]["flipper"]["has"] == json::array({true, true, false, true}));
 }
 
@@ -159,9 +160,9 @@ TEST_CASE("Contacts and sensors are in a state only if they are shown, the latte
   for (int i = 0; i < 1000; ++i) simulation.world.step();
   world_server::WorldState state;
   world_server::read_state(simulation, state, {true, {first, second}});
-  const json plain = json::parse(state_message(state, 1, 1, 1));
+  const json plain = json::parse(state_message(state, 1, 1, 1, 1));
   for (const char* key : {"contacts", "scans", "imu"}) CHECK_FALSE(plain["robots"][0].contains(key));
-  const json shown = json::parse(state_message(state, 1, 1, 1, {}, {true, second}));
+  const json shown = json::parse(state_message(state, 1, 1, 1, 1, {}, {true, second}));
   double up_n = 0;
   for (const json& contact : shown["robots"][0]["contacts"]) {
     REQUIRE(contact.size() == 7);
