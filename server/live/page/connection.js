@@ -13,7 +13,8 @@ export function address(path) {
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.
 // `roundTrip_ms()`: from a word to its answer; null before the first. `way_ms()`: from the server to here, without what waited for this
-// page; 0 before it is known. `here_ms(t)`: when the server's time t, in s, was on this page's clock. `newestAge_ms()`: of the newest message, since it left the server.
+// page; 0 before it is known. `here_ms(t)`: when the server's time t, in s, was on this page's clock; after the first state.
+// `newestAge_ms()`: of the newest message, since it left the server.
 export function connect(listeners) {
   const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, way_ms, here_ms, newestAge_ms };
   let socket = null, answered_ms = null, unanswered = [], recent_ms = [];   // pings: how long the newest answered one took; when the others were sent
@@ -35,7 +36,7 @@ export function connect(listeners) {
     return recent_ms.length ? Math.min(...recent_ms) / 2 : 0;
   }
 
-  // The least of the last: the other states have waited, here or in a queue.
+  // By the state that came soonest: the others have waited, here or in a queue.
   function here_ms(t) {
     return 1000 * t + Math.min(...apart_ms) - way_ms();
   }
