@@ -8,7 +8,7 @@
 //   cycle  in lock step, from a command that answers frame n to frame n + 1: the chain, one control period of physics,
 //          and a whole frame of sensors back. The forwarder carries the same text that the relay makes of it.
 //
-// Exit status 1 if the relay's median exceeds 2 times, or its 99th percentile 3 times, the forwarder's.
+// Exit status 1 if the relay's median exceeds 1.5 times, or its 99th percentile 1.8 times, the forwarder's.
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -229,7 +229,7 @@ bool compare(const char* name, Measurement relay, Measurement forwarder, const s
 
   // Quantiles of all samples against the limits of their ratio.
   bool within = true;
-  for (const auto& [label, share, limit] : {std::tuple{"median", 0.5, 2.0}, std::tuple{"p99", 0.99, 3.0}}) {
+  for (const auto& [label, share, limit] : {std::tuple{"median", 0.5, 1.5}, std::tuple{"p99", 0.99, 1.8}}) {
     const double a = quantile(by_relay, share), b = quantile(by_forwarder, share);
     fmt::print("{},{},{:.1f},{:.1f},{:.2f},{:.1f},{}\n", name, label, a, b, a / b, limit,
                a <= limit * b ? "yes" : "NO");

@@ -45,11 +45,11 @@ int main(int argc, char** argv) {
     world_server::WorldState state;
     const double state_us = microseconds(3000, [&] { world_server::read_state(simulation, state); });
     std::string text;
-    const double words_us = microseconds(300, [&] { text = live::state_message(state, 1, 1, 1); });
+    const double words_us = microseconds(300, [&] { text = live::state_message(state, 1, 1, 1, 1); });
     // With contacts of all robots, and with the sensors of one, as a page may ask for them.
     for (int i = 0; i < 500; ++i) simulation.world.step();
     const double contacts_us = microseconds(300, [&] { world_server::read_state(simulation, state, {true, {}}); });
-    const std::size_t contacts_bytes = live::state_message(state, 1, 1, 1, {}, {true, 0}).size();
+    const std::size_t contacts_bytes = live::state_message(state, 1, 1, 1, 1, {}, {true, 0}).size();
     const std::uint32_t watched = state.robots.front().id;
     const double sensors_us = microseconds(300, [&] {
       world_server::read_state(simulation, state, {false, {watched}});

@@ -1,5 +1,5 @@
-// Hand-over between the relay's threads: one thread puts, one takes; neither waits for the other or takes a lock, and
-// nothing allocates.
+// Hand-over between the relay's threads: one thread puts, one takes at a time; neither waits for the other or takes a
+// lock, and nothing allocates.
 #pragma once
 
 #include <sys/eventfd.h>
@@ -9,6 +9,7 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cerrno>
 #include <cstdint>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -41,11 +42,11 @@ class Waker {
   std::atomic<bool> woken_{false};
 };
 
-// A bounded queue in front of the thread that `taker` wakes.
+// A bounded queue; `ring` is called after each item, on the thread that put it.
 template <class T, std::size_t kCapacity>
 class Mailbox {
  public:
-  explicit Mailbox(Waker& taker) : taker_(taker) {}
+  explicit Mailbox(std::function<void()> ring) : ring_(std::move(ring)) {}
   // Destroys items that were put but never taken: Boost 1.74's queue of fixed capacity does not.
   ~Mailbox() {
     queue_.consume_all([](T&) {});
@@ -56,7 +57,7 @@ class Mailbox {
   // Returns false, without taking `item`, if the queue is full.
   bool put(const T& item) {
     const bool taken = queue_.push(item);
-    taker_.wake();
+    ring_();
     return taken;
   }
   // Calls f(T&) for each item present now, oldest first.
@@ -66,7 +67,7 @@ class Mailbox {
   }
 
  private:
-  Waker& taker_;
+  std::function<void()> ring_;
   boost::lockfree::spsc_queue<T, boost::lockfree::capacity<kCapacity>> queue_;
 };
 

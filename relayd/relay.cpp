@@ -59,16 +59,11 @@ void Relay::run() {
   std::thread receiver(&Relay::receive_commands, this);
   std::thread link(&WorldLink::run, &link_, std::cref(threads_end_));
   while (true) {
-    sender_waker_.clear();
-    if (stopping_) break;  // requested after clear(), which would discard the wake-up of stop()
-    take_mail();
-    const TimePoint now = Clock::now();
-    watch_world(now);
-    session_.on_time(now, world_ && now - world_heard_ < kWorldIsAlive);
-    flush();
-    wait_for_mail();
+    timekeeper_waker_.clear();
+    if (threads_end_) break;  // looked at after clear(), which would discard the wake-up of shut_down()
+    decision_.ask([this] { decide(); });
+    wait_for_alarm();
   }
-  shut_down();
   receiver.join();
   link.join();
   world_.reset();
@@ -76,7 +71,7 @@ void Relay::run() {
 
 void Relay::stop() {
   stopping_ = true;
-  sender_waker_.wake();
+  timekeeper_waker_.wake();
 }
 
 void Relay::shut_down() {
@@ -91,6 +86,7 @@ void Relay::shut_down() {
   threads_end_ = true;
   receiver_waker_.wake();
   link_.waker().wake();
+  timekeeper_waker_.wake();
 }
 
 // --- receiver
@@ -135,7 +131,18 @@ void Relay::take_datagram(std::size_t bytes, const Address& from) {
   }
 }
 
-// --- sender
+// --- decision
+
+void Relay::decide() {
+  if (threads_end_) return;
+  if (stopping_) return shut_down();
+  take_mail();
+  const TimePoint now = Clock::now();
+  watch_world(now);
+  session_.on_time(now, world_ && now - world_heard_ < kWorldIsAlive);
+  flush();
+  set_alarm(now);
+}
 
 void Relay::take_mail() {
   events_.take_all([this](WorldEvent& event) {
@@ -214,19 +221,16 @@ void Relay::leave_world(std::string_view why, TimePoint now) {
   session_.on_world_lost(words, now);
 }
 
-void Relay::wait_for_mail() {
-  std::array<pollfd, 2> watched{{{sender_waker_.fd(), POLLIN, 0}, {-1, POLLOUT, 0}}};
-  if (world_ && !out_.empty()) watched[1].fd = world_->socket->get();
-  std::optional<TimePoint> deadline = session_.next_deadline();
-  const TimePoint now = Clock::now();
-  if (world_) deadline = std::min(deadline.value_or(now + kPingWorldEvery), now + kPingWorldEvery);
-  timespec timeout{};
-  if (deadline) {
-    const auto left = std::max(*deadline - now, Clock::duration::zero());
-    timeout.tv_sec = std::chrono::duration_cast<std::chrono::seconds>(left).count();
-    timeout.tv_nsec = std::chrono::nanoseconds(left % 1s).count();
-  }
-  ::ppoll(watched.data(), watched.size(), deadline ? &timeout : nullptr, nullptr);
+// Wakes the timekeeper only if it would be late: each message moves its deadline on, and it finds that when it wakes.
+void Relay::set_alarm(TimePoint now) {
+  Alarm alarm;
+  alarm.at = session_.next_deadline().value_or(TimePoint::max());
+  if (world_) alarm.at = std::min(alarm.at, now + kPingWorldEvery);
+  if (world_ && !out_.empty()) alarm.writable = world_->socket;
+  const std::lock_guard lock(alarm_mutex_);
+  if (alarm.at < waiting_for_.at || (alarm.writable && alarm.writable != waiting_for_.writable))
+    timekeeper_waker_.wake();
+  alarm_ = std::move(alarm);
 }
 
 void Relay::flush() {
@@ -245,6 +249,26 @@ void Relay::request_link(const WorldSession& session) {
   out_.clear();
   unanswered_sessions_ = 0;
   if (link_.requests().put({wanted_link_ + 1, session})) ++wanted_link_;
+}
+
+// --- timekeeper
+
+void Relay::wait_for_alarm() {
+  Alarm alarm;
+  {
+    const std::lock_guard lock(alarm_mutex_);
+    alarm = waiting_for_ = alarm_;
+  }
+  std::array<pollfd, 2> watched{{{timekeeper_waker_.fd(), POLLIN, 0}, {-1, POLLOUT, 0}}};
+  if (alarm.writable) watched[1].fd = alarm.writable->get();
+  const bool is_set = alarm.at != TimePoint::max();
+  timespec timeout{};
+  if (is_set) {
+    const auto left = std::max(alarm.at - Clock::now(), Clock::duration::zero());
+    timeout.tv_sec = std::chrono::duration_cast<std::chrono::seconds>(left).count();
+    timeout.tv_nsec = std::chrono::nanoseconds(left % 1s).count();
+  }
+  ::ppoll(watched.data(), watched.size(), is_set ? &timeout : nullptr, nullptr);
 }
 
 // --- requests of the session

@@ -1,17 +1,21 @@
-// The relay: three threads and the messages between them.
+// The relay: three threads, each of which brings something to decide.
 //
-//   commands (UDP) -> receiver --Arrivals--> sender --> world server (TCP), States (UDP)
-//   sensors (TCP) --> world link --WorldEvents--> sender
+//   commands (UDP) -> receiver ----Arrivals----+
+//   sensors (TCP) --> world link --WorldEvents-+--> decision --> world server (TCP), States (UDP)
+//   deadlines ------> timekeeper --------------+
 //
 // The receiver reads and checks datagrams as they arrive. The world link reads the sensor stream and converts it to
-// States. The sender, woken by either or by its next deadline, decides and writes: all output goes through it, so no
-// lock is needed. run() is the sender's thread.
+// States. Whoever brings something decides and writes at once, on its own thread, unless another thread is at it, which
+// then decides that, too (one_at_a_time.hpp): so a message wakes no other thread on its way. run() is the timekeeper's
+// thread.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +24,7 @@
 #include "formats/protocol/relay_datagram.hpp"
 #include "relayd/commander_session.hpp"
 #include "relayd/mailbox.hpp"
+#include "relayd/one_at_a_time.hpp"
 #include "relayd/sockets.hpp"
 #include "relayd/world_link.hpp"
 
@@ -56,7 +61,8 @@ class Relay : private SessionPort {
   void receive_commands();
   void take_datagram(std::size_t bytes, const Address& from);
 
-  // The sender's thread.
+  // One thread at a time.
+  void decide();
   void take_mail();
   void take(const WorldFrame& frame);
   void take(const WorldPong& pong);
@@ -65,10 +71,13 @@ class Relay : private SessionPort {
   void take(const LinkDown& down);
   void watch_world(TimePoint now);
   void leave_world(std::string_view why, TimePoint now);
-  void wait_for_mail();
+  void set_alarm(TimePoint now);
   void flush();
   void request_link(const WorldSession& session);
   void shut_down();
+
+  // The timekeeper's thread.
+  void wait_for_alarm();
 
   void send(const Address& to, const protocol::relay::Datagram& datagram) override;
   void open_world(const protocol::relay::Hello& hello) override;
@@ -81,12 +90,22 @@ class Relay : private SessionPort {
   Address address_;
   Descriptor udp_;
   std::atomic<bool> stopping_{false};     // asked to stop
-  std::atomic<bool> threads_end_{false};  // the other two may end: the robot has been stopped
+  std::atomic<bool> threads_end_{false};  // the robot has been stopped: nothing more is decided
 
-  Waker sender_waker_;
-  Mailbox<Arrival, 1024> arrivals_{sender_waker_};
-  WorldEvents events_{sender_waker_};
+  OneAtATime decision_;
+  Mailbox<Arrival, 1024> arrivals_{[this] { decision_.ask([this] { decide(); }); }};
+  WorldEvents events_{[this] { decision_.ask([this] { decide(); }); }};
   WorldLink link_;
+
+  // When the timekeeper has to ask for a decision.
+  struct Alarm {
+    TimePoint at = TimePoint::max();
+    std::shared_ptr<Descriptor> writable;  // or as soon as this socket takes more; may be null
+  };
+  Waker timekeeper_waker_;
+  std::mutex alarm_mutex_;
+  Alarm alarm_;        // the newest
+  Alarm waiting_for_;  // the one that the timekeeper waits for, or did last
 
   // The receiver's.
   Waker receiver_waker_;
@@ -94,7 +113,7 @@ class Relay : private SessionPort {
   Arrival arrival_;
   protocol::LogLimiter log_malformed_, log_overflow_;
 
-  // The sender's.
+  // The decision's.
   CommanderSession session_{*this};
   std::optional<LinkUp> world_;
   std::uint64_t wanted_link_ = 0;

@@ -158,7 +158,7 @@ void WorldLink::read_line(std::string_view line, Connection& connection) {
   }
 }
 
-// Sends the handshake's output; once the handshake is complete, hands the connection to the sender.
+// Sends the handshake's output; once the handshake is complete, hands the connection over.
 void WorldLink::finish_handshake(Connection& connection) {
   connection.handshake.on_time(Clock::now(), connection.out);
   send_whole(connection.socket->get(), connection.out);
@@ -184,7 +184,7 @@ void WorldLink::finish_handshake(Connection& connection) {
   put(frame);
 }
 
-// If the sender is held up, this holds up the world through TCP rather than losing its messages.
+// If the relay is held up, this holds up the world through TCP rather than losing its messages.
 void WorldLink::put(const WorldEvent& event) {
   while (!events_.put(event) && !*stopping_) std::this_thread::sleep_for(100us);
 }

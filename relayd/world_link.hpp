@@ -1,5 +1,5 @@
 // The relay's second thread: keeps a connection to the world server and converts its messages to WorldEvents. After it
-// has handed a connection over with LinkUp it only reads; the sender does all further writing.
+// has handed a connection over with LinkUp it only reads; the relay does all further writing.
 #pragma once
 
 #include <atomic>
@@ -51,7 +51,7 @@ class WorldLink {
   void run(const std::atomic<bool>& stopping);
 
   Waker& waker() { return waker_; }
-  LinkRequests& requests() { return requests_; }  // filled by the sender
+  LinkRequests& requests() { return requests_; }  // filled by the relay
 
  private:
   struct Connection;
@@ -68,7 +68,7 @@ class WorldLink {
   const RobotPlacement placement_;
   WorldEvents& events_;
   Waker waker_;
-  LinkRequests requests_{waker_};
+  LinkRequests requests_{[this] { waker_.wake(); }};
   LinkRequest request_;
   AddressLookup lookup_;
   const std::atomic<bool>* stopping_ = nullptr;
