@@ -3,7 +3,7 @@ const PROTOCOL = 2;
 // A state comes 30 times a second, also while the world is paused. Silence is counted, not read off the clock: a page that was held
 // up itself has missed beats too, and has not read yet what came meanwhile.
 const BEAT_MS = 100, SILENT_BEATS = 6;
-const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6, RECENT_STATES = 128;
+const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6, STEADY_PINGS = 3, RECENT_STATES = 128;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.
@@ -12,11 +12,12 @@ export function address(path) {
 }
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.
-// `roundTrip_ms()`: from a word to its answer; null before the first. `way_ms()`: from the server to here, without what waited for this
+// `roundTrip_ms()`: from a word to its answer; null before the first. `steadyRoundTrip_ms()`: that of the link, without what a page that
+// was held up once added to an answer; 0 before some are known. `way_ms()`: from the server to here, without what waited for this
 // page; 0 before it is known. `here_ms(t)`: when the server's time t, in s, was on this page's clock; after the first state.
 // `newestAge_ms()`: of the newest message, since it left the server.
 export function connect(listeners) {
-  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, way_ms, here_ms, newestAge_ms };
+  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, steadyRoundTrip_ms, way_ms, here_ms, newestAge_ms };
   let socket = null, answered_ms = null, unanswered = [], recent_ms = [];   // pings: how long the newest answered one took; when the others were sent
   let apart_ms = [];   // of the last states: from the server's clock when sent to this page's when read
   let number = null, server = null, beats = 0;
@@ -29,6 +30,11 @@ export function connect(listeners) {
   function roundTrip_ms() {
     const waits_ms = unanswered.length ? performance.now() - unanswered[0] : 0;
     return answered_ms === null ? (unanswered.length ? waits_ms : null) : Math.max(answered_ms, waits_ms);
+  }
+
+  // The least of the newest: a link that is slow is so for all of them.
+  function steadyRoundTrip_ms() {
+    return recent_ms.length < STEADY_PINGS ? 0 : Math.min(...recent_ms.slice(-STEADY_PINGS));
   }
 
   // Half of the least of the last round trips: the others have waited, here or in a queue.

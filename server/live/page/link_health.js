@@ -41,7 +41,7 @@ export function createLinkHealth(world, link, mine, oldestPicture_ms) {
 
   function update() {
     const isHeard = link.isHeard();
-    const roundTrip_ms = link.roundTrip_ms() ?? 0;
+    const roundTrip_ms = link.steadyRoundTrip_ms();
     isSlow = roundTrip_ms >= (isSlow ? FAST_AGAIN_MS : SLOW_MS);
     const found = alarms({ isHeard, newestAge_ms: link.newestAge_ms(), roundTrip_ms, isSlow, mine: mine(), world,
                            oldestPicture_ms: oldestPicture_ms() });
