@@ -61,7 +61,7 @@ void Relay::run() {
   while (true) {
     timekeeper_waker_.clear();
     if (threads_end_) break;  // looked at after clear(), which would discard the wake-up of shut_down()
-    decision_.ask([this] { decide(); });
+    attend();
     wait_for_alarm();
   }
   receiver.join();

@@ -61,6 +61,11 @@ class Relay : private SessionPort {
   void receive_commands();
   void take_datagram(std::size_t bytes, const Address& from);
 
+  // Any thread, once it has brought something: decides, or leaves that to a thread that is at it.
+  void attend() {
+    decision_.ask([this] { decide(); });
+  }
+
   // One thread at a time.
   void decide();
   void take_mail();
@@ -93,8 +98,8 @@ class Relay : private SessionPort {
   std::atomic<bool> threads_end_{false};  // the robot has been stopped: nothing more is decided
 
   OneAtATime decision_;
-  Mailbox<Arrival, 1024> arrivals_{[this] { decision_.ask([this] { decide(); }); }};
-  WorldEvents events_{[this] { decision_.ask([this] { decide(); }); }};
+  Mailbox<Arrival, 1024> arrivals_{[this] { attend(); }};
+  WorldEvents events_{[this] { attend(); }};
   WorldLink link_;
 
   // When the timekeeper has to ask for a decision.
