@@ -48,8 +48,13 @@ std::string without_escapes(std::string_view text) {
 
 class PictureConnection final : public PictureReader, public std::enable_shared_from_this<PictureConnection> {
  public:
-  PictureConnection(Hub& hub, tcp::socket socket, PicturePath path)
-      : hub_(hub), socket_(std::move(socket)), path_(std::move(path)), ask_again_(hub.site.io), unread_(hub.site.io) {
+  PictureConnection(Hub& hub, image_server::Feed& cameras, tcp::socket socket, PicturePath path)
+      : hub_(hub),
+        cameras_(cameras),
+        socket_(std::move(socket)),
+        path_(std::move(path)),
+        ask_again_(hub.site.io),
+        unread_(hub.site.io) {
     ++hub_.site.connections;
   }
   ~PictureConnection() {
@@ -72,6 +77,7 @@ class PictureConnection final : public PictureReader, public std::enable_shared_
   void close();
 
   Hub& hub_;
+  image_server::Feed& cameras_;
   tcp::socket socket_;
   const PicturePath path_;
   asio::steady_timer ask_again_, unread_;
@@ -103,7 +109,7 @@ void PictureConnection::watch_for_end() {
 
 void PictureConnection::look() {
   if (!open_ || sending_) return;
-  const image_server::Feed::Look seen = hub_.cameras->look(path_.view);
+  const image_server::Feed::Look seen = cameras_.look(path_.view);
   if (!seen.none.empty()) return begun_ ? close() : refuse("404 Not Found", seen.none);
   const Clock::duration waited = Clock::now() - asked_;
   if (seen.frame && (seen.frame != frame_ || waited >= kRepeat)) return send(seen.frame);
@@ -217,8 +223,8 @@ std::optional<PicturePath> parse_picture_path(std::string_view path) {
   return PicturePath{without_escapes(path), stream};
 }
 
-void start_pictures(Hub& hub, boost::beast::tcp_stream stream, const PicturePath& path) {
-  std::make_shared<PictureConnection>(hub, stream.release_socket(), path)->start();
+void start_pictures(Hub& hub, image_server::Feed& cameras, boost::beast::tcp_stream stream, const PicturePath& path) {
+  std::make_shared<PictureConnection>(hub, cameras, stream.release_socket(), path)->start();
 }
 
 }  // namespace kenaf::live

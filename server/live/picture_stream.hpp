@@ -27,9 +27,9 @@ class PictureReader {
   ~PictureReader() = default;
 };
 
-// Serves until the browser is gone or stops reading, or the camera is gone. hub.cameras must not be null. A slow
+// Serves until the browser is gone or stops reading, or the camera is gone. `cameras` must outlive the hub. A slow
 // browser gets the newest frame whenever it has taken the previous one; without a new frame the old one is sent again
 // after a second.
-void start_pictures(Hub& hub, boost::beast::tcp_stream stream, const PicturePath& path);
+void start_pictures(Hub& hub, image_server::Feed& cameras, boost::beast::tcp_stream stream, const PicturePath& path);
 
 }  // namespace kenaf::live

@@ -69,7 +69,7 @@ Route picture_route(Hub& hub) {
       return reply_in_words(http::status::service_unavailable, "Too many camera viewers are already connected.\n");
     }
     return TakeOver([&hub, picture = std::move(*picture)](boost::beast::tcp_stream stream, const PageRequest&) {
-      start_pictures(hub, std::move(stream), picture);
+      start_pictures(hub, *hub.cameras, std::move(stream), picture);
     });
   };
 }
