@@ -29,6 +29,10 @@ struct Pixel {
 // The focal length f in pixels: a point at (1, y, z) in C is at u = width / 2 - f y, v = height / 2 - f z.
 double focal_length_px(const Lens& lens);
 
+// The lens that shows the same with half of the pixels across and down, rounded up. An odd number of them across widens
+// the picture by up to half a pixel on each side, and one down by as much above and below.
+Lens half_size(const Lens& lens);
+
 // Projects a point into the picture, continued beyond its border. Empty if the point is behind the camera or in the
 // pinhole's plane.
 std::optional<Pixel> project(const View& view, const Eigen::Vector3d& p_W);

@@ -53,7 +53,7 @@ class Page:
 
 
 HAS_PICTURES = ("document.querySelectorAll('#pictures img').length === 2 && "
-                "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth === 640)")
+                "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth > 0)")
 
 
 def connected(browser):

@@ -27,7 +27,7 @@ def picture_of_live_view(build, png):
             if code != 'KeyW':
                 browser.key(code, False)
         browser.wait_for("document.getElementById('alarm').hidden && "
-                         "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth === 640)")
+                         "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth > 0)")
         browser.screenshot(png)
         browser.key('KeyW', False)
 

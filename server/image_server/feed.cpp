@@ -12,12 +12,10 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <thread>
 
 #include "camera/jpeg.hpp"
-#include "camera/renderer.hpp"
-#include "camera/robot_cameras.hpp"
+#include "server/image_server/drawing.hpp"
 #include "server/image_server/exposure.hpp"
 #include "server/image_server/view_name.hpp"
 
@@ -35,6 +33,11 @@ constexpr std::chrono::milliseconds kLookAnyway{100};
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+template <typename Value>
+bool any_of(const BySize<Value>& values) {
+  return std::ranges::any_of(values, [](const Value& value) { return static_cast<bool>(value); });
 }
 
 // State that the world's thread needs to answer, even if the feed is gone by then.
@@ -62,8 +65,12 @@ struct Feed::Implementation {
   void ask(bool at_once);
   void take(std::shared_ptr<Exposure> exposure);
   void settle_views(const Exposure& exposure);
-  void draw(const Exposure& exposure, const std::vector<CameraId>& due);
-  FramePtr draw_one(const Exposure& exposure, std::size_t robot, std::size_t camera, std::uint64_t number);
+  struct Due {
+    CameraId id;
+    BySize<bool> sizes;
+  };
+  void draw(const Exposure& exposure, const std::vector<Due>& due);
+  FramePtr draw_one(const Exposure& exposure, std::size_t robot, std::size_t camera, PictureSize size);
   void stand_still(CameraId id, const std::string& why);
   void ask_later(const Exposure& exposure);
   void publish_due();
@@ -75,12 +82,15 @@ struct Feed::Implementation {
 
   // For any thread, with the mutex.
   struct View {
-    Clock::time_point since, wanted;  // the first request, and the last one
+    Clock::time_point since;                          // the first request
+    BySize<std::optional<Clock::time_point>> wanted;  // the last one for each size, if any
     std::optional<CameraId> camera;
     std::string none;
+
+    Clock::time_point last_wanted() const { return std::ranges::max(wanted).value_or(since); }
   };
   struct Shown {
-    FramePtr newest;
+    BySize<FramePtr> newest;
     std::string fault;
   };
   mutable std::mutex mutex;
@@ -92,16 +102,21 @@ struct Feed::Implementation {
 
   // For the feed's thread only.
   struct Drawn {
-    std::unique_ptr<camera::Renderer> renderer;  // while somebody looks
+    BySize<Drawing> drawings;  // those of sizes that nobody looks at are empty
     std::optional<Tick> last;
+    std::uint64_t last_step = 0;  // of the last exposure
+    Clock::time_point last_wall;
     std::uint64_t number = 0;
     double rate_hz = 0;
-    bool wanted = false, faulty = false;
+    BySize<bool> wanted{};
+    bool faulty = false;
     bool left_out = false;  // the last exposure, because it was late
-    // The last image, null: none; and what it shows.
-    std::shared_ptr<const CameraImage> image;
-    camera::WorldSnapshot world;
-    double field_of_view_rad = 0;
+
+    BySize<bool> missing() const {
+      BySize<bool> out{};
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = wanted[i] && !drawings[i].has_image();
+      return out;
+    }
   };
   struct Waiting {
     Clock::time_point until;
@@ -112,7 +127,8 @@ struct Feed::Implementation {
   std::unique_ptr<camera::Scene> scene;  // built when it is first needed
   camera::JpegEncoder encoder;
   bool awake = false;
-  std::uint64_t asked = 0;  // the newest request
+  std::uint64_t asked = 0;                  // the newest request
+  std::optional<std::uint64_t> taken_step;  // of the exposure taken last
   std::shared_ptr<Exposure> spare;
   std::shared_ptr<Exchange> exchange = std::make_shared<Exchange>();
 
@@ -140,7 +156,7 @@ void Feed::Implementation::ask(bool at_once) {
   // The cameras being viewed; without any there is no next exposure to wait for.
   std::vector<DueCamera> cameras;
   for (const auto& [id, camera] : drawn) {
-    if (camera.wanted && !camera.faulty) cameras.push_back({camera.rate_hz, camera.last});
+    if (any_of(camera.wanted) && !camera.faulty) cameras.push_back({camera.rate_hz, camera.last});
   }
   if (!at_once && cameras.empty()) return;
 
@@ -168,20 +184,32 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
   const bool newest = exposure->asked == asked;
   settle_views(*exposure);
   const Clock::duration waited = Clock::now() - exposure->wall;
-  std::vector<CameraId> due;
+  const bool time_stands = taken_step == exposure->step;
+  taken_step = exposure->step;
+  std::vector<Due> due;
   bool wanted = false;
   for (auto& [id, camera] : drawn) {
-    wanted = wanted || camera.wanted;
-    if (!camera.wanted || camera.faulty) continue;
-    if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) continue;
+    wanted = wanted || any_of(camera.wanted);
+    if (!any_of(camera.wanted) || camera.faulty) continue;
+    if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) {
+      // Where time stands, a size that is new waits for no exposure.
+      const BySize<bool> missing = camera.missing();
+      if (!time_stands || !any_of(missing)) continue;
+      if (camera.last_step == exposure->step) {
+        due.push_back({id, missing});
+        continue;
+      }
+    }
     // Half a period late already: the next one is fresher. Never twice in a row, or a busy machine would show nothing.
     const bool late = camera.last && exposure->speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure->speed));
     camera.left_out = late && !camera.left_out;
-    if (!camera.left_out) due.push_back(id);
+    if (!camera.left_out) due.push_back({id, camera.wanted});
     const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
     // after a reset time restarts, while numbers continue
     camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
     camera.last = tick;
+    camera.last_step = exposure->step;
+    camera.last_wall = exposure->wall;
   }
   {
     const std::lock_guard lock(mutex);
@@ -198,12 +226,12 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
 // Forgets views nobody requests any more, and determines what the others show.
 void Feed::Implementation::settle_views(const Exposure& exposure) {
   const auto& robots = exposure.world.robots;
-  std::set<CameraId> wanted;
+  std::map<CameraId, BySize<bool>> wanted;
   bool changed = false;
   {
     const std::lock_guard lock(mutex);
     const Clock::time_point forgotten = Clock::now() - seconds(kWanted_s);
-    std::erase_if(views, [&](const auto& entry) { return entry.second.wanted < forgotten; });
+    std::erase_if(views, [&](const auto& entry) { return entry.second.last_wanted() < forgotten; });
     for (auto& [name, view] : views) {
       const auto camera = find_view(robots, name);
       // An exposure from before the request may lack a robot that has come since; the next one is on its way.
@@ -212,47 +240,60 @@ void Feed::Implementation::settle_views(const Exposure& exposure) {
       changed = changed || camera != view.camera || none != view.none;
       view.camera = camera;
       view.none = std::move(none);
-      if (camera) wanted.insert(*camera);
+      if (!camera) continue;
+      BySize<bool>& sizes = wanted[*camera];
+      for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] || view.wanted[i] >= forgotten;
     }
     std::erase_if(shown, [&](const auto& entry) { return !wanted.contains(entry.first); });
-    for (const CameraId& id : wanted) shown.try_emplace(id);
+    for (const auto& [id, sizes] : wanted) {
+      Shown& of_camera = shown[id];
+      for (std::size_t i = 0; i < sizes.size(); ++i)
+        if (!sizes[i]) of_camera.newest[i].reset();
+    }
   }
-  std::erase_if(waiting, [&](const Waiting& entry) { return !wanted.contains(entry.frame->id); });
+  const auto wanted_of = [&](const CameraId& id) {
+    const auto found = wanted.find(id);
+    return found == wanted.end() ? BySize<bool>{} : found->second;
+  };
+  std::erase_if(waiting,
+                [&](const Waiting& entry) { return !wanted_of(entry.frame->id)[index_of(entry.frame->size)]; });
   const auto robot_of = [&](CameraId id) { return std::ranges::find(robots, id.robot, &camera::RobotSnapshot::id); };
   std::erase_if(drawn, [&](const auto& entry) { return robot_of(entry.first) == robots.end(); });
-  for (const CameraId& id : wanted) {
+  for (const auto& [id, sizes] : wanted) {
     drawn[id].rate_hz = robot_of(id)->description->cameras[id.camera].rate_hz;
   }
   for (auto& [id, camera] : drawn) {
-    camera.wanted = wanted.contains(id);
-    if (camera.wanted) continue;
+    camera.wanted = wanted_of(id);
+    for (std::size_t i = 0; i < camera.wanted.size(); ++i)
+      if (!camera.wanted[i]) camera.drawings[i] = {};
+    if (any_of(camera.wanted)) continue;
     // its number is kept, so that no reader sees it twice
-    camera.renderer.reset();
-    camera.image.reset();
     camera.last.reset();
     camera.faulty = false;
   }
   if (changed) tell();
 }
 
-void Feed::Implementation::draw(const Exposure& exposure, const std::vector<CameraId>& due) {
+void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Due>& due) {
   try {
     if (!scene) scene = std::make_unique<camera::Scene>(world.world_description());
     scene->update(exposure.world);
   } catch (const std::exception& error) {
     scene.reset();  // it may be partly updated
-    for (const CameraId& id : due) stand_still(id, error.what());
+    for (const auto& [id, sizes] : due) stand_still(id, error.what());
     return;
   }
-  for (const CameraId& id : due) {
+  for (const auto& [id, sizes] : due) {
     const auto& robots = exposure.world.robots;
     const auto robot = std::ranges::find(robots, id.robot, &camera::RobotSnapshot::id) - robots.begin();
+    const double latency_s = robots[static_cast<std::size_t>(robot)].description->cameras[id.camera].latency_s;
+    const Clock::duration latency = exposure.speed > 0 ? seconds(latency_s / exposure.speed) : Clock::duration::zero();
     try {
-      const FramePtr frame = draw_one(exposure, static_cast<std::size_t>(robot), id.camera, drawn.at(id).number);
-      const double latency_s = robots[static_cast<std::size_t>(robot)].description->cameras[id.camera].latency_s;
-      const Clock::duration latency =
-          exposure.speed > 0 ? seconds(latency_s / exposure.speed) : Clock::duration::zero();
-      waiting.push_back({exposure.wall + latency, frame});
+      for (const PictureSize size : kPictureSizes) {
+        if (!sizes[index_of(size)]) continue;
+        const FramePtr frame = draw_one(exposure, static_cast<std::size_t>(robot), id.camera, size);
+        waiting.push_back({exposure.wall + latency, frame});
+      }
     } catch (const std::exception& error) {
       stand_still(id, error.what());
     }
@@ -261,30 +302,18 @@ void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Came
 }
 
 FramePtr Feed::Implementation::draw_one(const Exposure& exposure, std::size_t robot_index, std::size_t camera_index,
-                                        std::uint64_t number) {
+                                        PictureSize size) {
   const camera::RobotSnapshot& robot = exposure.world.robots[robot_index];
-  const physics::CameraDescription& camera = robot.description->cameras[camera_index];
   Drawn& state = drawn.at({robot.id, camera_index});
-  if (!state.renderer) state.renderer = std::make_unique<camera::Renderer>();
   const auto frame = std::make_shared<Frame>();
   frame->id = {robot.id, camera_index};
   frame->robot = robot.name;
-  frame->camera = camera.name;
-  frame->number = number;
+  frame->camera = robot.description->cameras[camera_index].name;
+  frame->size = size;
+  frame->number = state.number;
   frame->robot_time_s = exposure.world.time_s;
-  frame->exposed = exposure.wall;
-  const double field_of_view_rad = exposure.field_of_view_rad[robot_index][camera_index];
-  // what looks as before is not drawn again: most robots stand most of the time
-  if (!state.image || state.field_of_view_rad != field_of_view_rad || !look_alike(state.world, exposure.world)) {
-    const auto image = std::make_shared<CameraImage>();
-    state.renderer->render(*scene, camera::camera_view(robot, camera, field_of_view_rad), image->picture);
-    const auto jpeg = encoder.encode(image->picture, camera.jpeg_quality);
-    image->jpeg.assign(jpeg.begin(), jpeg.end());
-    state.image = image;
-    state.world = exposure.world;
-    state.field_of_view_rad = field_of_view_rad;
-  }
-  frame->image = state.image;
+  frame->exposed = state.last_wall;
+  frame->image = state.drawings[index_of(size)].draw(*scene, exposure, robot_index, camera_index, size, encoder);
   return frame;
 }
 
@@ -302,7 +331,7 @@ void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
 void Feed::Implementation::ask_later(const Exposure& exposure) {
   double rate_hz = 1 / std::chrono::duration<double>(kLookAnyway).count();
   for (const auto& [id, camera] : drawn) {
-    if (camera.wanted) rate_hz = std::max(rate_hz, camera.rate_hz);
+    if (any_of(camera.wanted)) rate_hz = std::max(rate_hz, camera.rate_hz);
   }
   ask_timer.expires_at(exposure.wall + seconds(1 / rate_hz));
   ask_timer.async_wait([this](boost::system::error_code cancelled) {
@@ -324,7 +353,7 @@ void Feed::Implementation::publish_due() {
       }
       const auto found = shown.find(entry.frame->id);
       if (found == shown.end()) continue;
-      FramePtr& newest = found->second.newest;
+      FramePtr& newest = found->second.newest[index_of(entry.frame->size)];
       if (!newest || newest->number < entry.frame->number) newest = entry.frame;
       published = true;
     }
@@ -360,7 +389,7 @@ bool Feed::Implementation::make_room() {
   auto oldest = views.end();
   for (auto entry = views.begin(); entry != views.end(); ++entry) {
     if (entry->second.camera) continue;
-    if (oldest == views.end() || entry->second.wanted < oldest->second.wanted) oldest = entry;
+    if (oldest == views.end() || entry->second.last_wanted() < oldest->second.last_wanted()) oldest = entry;
   }
   if (oldest == views.end()) return false;
   views.erase(oldest);
@@ -393,7 +422,7 @@ Feed::~Feed() {
   impl_->thread.join();
 }
 
-Feed::Look Feed::look(std::string_view view) {
+Feed::Look Feed::look(std::string_view view, PictureSize size) {
   // Finds or creates the view, and notes that it is wanted now.
   Look out;
   bool is_new = false;
@@ -408,12 +437,12 @@ Feed::Look Feed::look(std::string_view view) {
       is_new = true;
     }
     Implementation::View& entry = found->second;
-    entry.wanted = Clock::now();
+    entry.wanted[index_of(size)] = Clock::now();
     // Its camera's newest frame, and why there is none or no newer one.
     out.none = entry.none;
     if (entry.camera) {
       if (const auto shown = impl_->shown.find(*entry.camera); shown != impl_->shown.end()) {
-        out.frame = shown->second.newest;
+        out.frame = shown->second.newest[index_of(size)];
         out.none = shown->second.fault;
       }
     }
@@ -428,7 +457,9 @@ std::vector<std::shared_ptr<const Frame>> Feed::newest() const {
   std::vector<FramePtr> out;
   const std::lock_guard lock(impl_->mutex);
   for (const auto& [id, shown] : impl_->shown) {
-    if (shown.newest) out.push_back(shown.newest);
+    const auto& [full, half] = shown.newest;
+    const FramePtr& newest = !full || (half && half->number > full->number) ? half : full;
+    if (newest) out.push_back(newest);
   }
   return out;
 }

@@ -41,11 +41,11 @@ class Feed {
     std::shared_ptr<const Frame> frame;  // the newest of the view; null: none yet
     std::string none;                    // why there is no frame and will be none; empty: it will come
   };
-  // Counts as a request. A camera whose picture could not be drawn stops: `none` says why, in addition to its last
-  // frame.
-  Look look(std::string_view view);
+  // Counts as a request for frames of that size. A camera whose picture could not be drawn stops: `none` says why, in
+  // addition to its last frame.
+  Look look(std::string_view view, PictureSize size = PictureSize::full);
 
-  // Returns the newest frame of each camera being drawn. Does not count as a request.
+  // Returns the newest frame of each camera being drawn, of either size. Does not count as a request.
   std::vector<std::shared_ptr<const Frame>> newest() const;
 
   // `notify` is called on the feed's thread whenever look() may have something new, and never after the returned handle

@@ -3,6 +3,7 @@
 // Thread safety: pure functions; a published Frame may be read by any thread.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <compare>
 #include <cstdint>
@@ -25,6 +26,17 @@ struct CameraId {
   auto operator<=>(const CameraId&) const = default;
 };
 
+// How large a picture is drawn: as the camera's description has it, or with half of its width and height (rounded up),
+// at a third of the cost, for a place that is no larger.
+enum class PictureSize { full, half };
+inline constexpr std::array kPictureSizes{PictureSize::full, PictureSize::half};
+// One value for each of kPictureSizes, in their order.
+template <typename Value>
+using BySize = std::array<Value, kPictureSizes.size()>;
+constexpr std::size_t index_of(PictureSize size) {
+  return static_cast<std::size_t>(size);
+}
+
 // What a camera sees, and its JPEG at the camera's own quality.
 struct CameraImage {
   camera::Picture picture;
@@ -33,8 +45,10 @@ struct CameraImage {
 
 struct Frame {
   CameraId id;
-  std::string robot, camera;                 // their names
-  std::uint64_t number = 0;                  // of this camera, from 1; a gap counts the pictures not drawn in time
+  std::string robot, camera;  // their names
+  PictureSize size = PictureSize::full;
+  std::uint64_t number = 0;                  // of this camera, from 1; a gap counts the pictures not drawn in time. The
+                                             // same in both sizes for the same moment
   double robot_time_s = 0;                   // of the moment shown
   SteadyTime exposed;                        // the same moment on the wall clock
   std::shared_ptr<const CameraImage> image;  // never null; that of the frame before if nothing has moved since

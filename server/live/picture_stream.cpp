@@ -9,6 +9,7 @@
 #include <boost/asio/write.hpp>
 #include <chrono>
 
+#include "server/live/access.hpp"
 #include "server/live/headers.hpp"
 
 namespace kenaf::live {
@@ -109,7 +110,7 @@ void PictureConnection::watch_for_end() {
 
 void PictureConnection::look() {
   if (!open_ || sending_) return;
-  const image_server::Feed::Look seen = cameras_.look(path_.view);
+  const image_server::Feed::Look seen = cameras_.look(path_.view, path_.size);
   if (!seen.none.empty()) return begun_ ? close() : refuse("404 Not Found", seen.none);
   const Clock::duration waited = Clock::now() - asked_;
   if (seen.frame && (seen.frame != frame_ || waited >= kRepeat)) return send(seen.frame);
@@ -212,7 +213,7 @@ void PictureConnection::close() {
 
 }  // namespace
 
-std::optional<PicturePath> parse_picture_path(std::string_view path) {
+std::optional<PicturePath> parse_picture_path(std::string_view path, std::string_view query) {
   constexpr std::string_view kStream = ".mjpg", kPicture = ".jpg";
   if (!path.starts_with('/')) return std::nullopt;
   path.remove_prefix(1);
@@ -220,7 +221,10 @@ std::optional<PicturePath> parse_picture_path(std::string_view path) {
   if (!stream && !path.ends_with(kPicture)) return std::nullopt;
   path.remove_suffix(stream ? kStream.size() : kPicture.size());
   if (path.empty()) return std::nullopt;
-  return PicturePath{without_escapes(path), stream};
+  const std::string_view size = query_value(query, "size");
+  if (!size.empty() && size != "full" && size != "half") return std::nullopt;
+  using enum image_server::PictureSize;
+  return PicturePath{without_escapes(path), stream, size == "half" ? half : full};
 }
 
 void start_pictures(Hub& hub, image_server::Feed& cameras, boost::beast::tcp_stream stream, const PicturePath& path) {

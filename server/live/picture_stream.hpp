@@ -10,13 +10,15 @@
 
 namespace kenaf::live {
 
-// Parses "/ROBOT/CAMERA.mjpg" or "/CAMERA.jpg": the camera (server/image_server/view_name.hpp), and whether it is a
-// stream. %-escapes are decoded. Empty: the path is neither. Pure.
+// Parses "/ROBOT/CAMERA.mjpg" or "/CAMERA.jpg", and a query: the camera (server/image_server/view_name.hpp), whether it
+// is a stream, and the size: "size=half", "size=full" or, without it, full. %-escapes are decoded in the path. Empty:
+// the path is neither, or there is no such size. Pure.
 struct PicturePath {
   std::string view;
   bool stream;
+  image_server::PictureSize size;
 };
-std::optional<PicturePath> parse_picture_path(std::string_view path);
+std::optional<PicturePath> parse_picture_path(std::string_view path, std::string_view query);
 
 class PictureReader {
  public:

@@ -62,8 +62,12 @@ Route viewer_route(Hub& hub) {
 
 Route picture_route(Hub& hub) {
   return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
-    auto picture = parse_picture_path(visit.rest);
-    if (!picture) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    auto picture = parse_picture_path(visit.rest, visit.query);
+    if (!picture) {
+      return reply_in_words(http::status::not_found,
+                            "There is no such picture; ask for /camera/ROBOT/CAMERA.jpg or .mjpg, with ?size=full or "
+                            "?size=half.\n");
+    }
     if (hub.cameras == nullptr) return reply_in_words(http::status::not_found, "The cameras are off.\n");
     if (hub.picture_readers.size() >= hub.limits.pictures) {
       return reply_in_words(http::status::service_unavailable, "Too many camera viewers are already connected.\n");

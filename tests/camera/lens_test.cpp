@@ -34,6 +34,21 @@ TEST_CASE("A field of view of 90 degrees ends at 45 degrees, and a pixel is as h
   CHECK_FALSE(in_picture(view.lens, {100, 480}));
 }
 
+TEST_CASE("Half of the pixels show the same, at half of the distances from the middle") {
+  const View full{{640, 480, pi / 2}, {}}, half{half_size(full.lens), {}};
+  CHECK(half.lens.width == 320);
+  CHECK(half.lens.height == 240);
+  CHECK(half.lens.field_of_view_rad == Approx(pi / 2));
+  const Eigen::Vector3d p_W(2, 0.5, -0.25);
+  CHECK(project(half, p_W)->u - 160 == Approx((project(full, p_W)->u - 320) / 2));
+  CHECK(project(half, p_W)->v - 120 == Approx((project(full, p_W)->v - 240) / 2));
+  // 5 pixels of focal length 5 / 2: three of 5 / 4 are a field of view of 2 atan(1.5 / 1.25)
+  const Lens odd = half_size({5, 1, pi / 2});
+  CHECK(odd.width == 3);
+  CHECK(odd.height == 1);
+  CHECK(odd.field_of_view_rad == Approx(2 * std::atan(1.2)));
+}
+
 TEST_CASE("A point on a pixel's ray is projected onto the pixel") {
   const View view{{320, 200, 1.3}, pose(-3, 1, 0.4, 0.3, -0.5, 2.1)};
   for (const double depth : {0.01, 1.0, 300.0}) {

@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   live::host_allowed(text, "workbench");
   live::origin_allowed(text, "127.0.0.1:8080");
   live::query_value(text, "token");
-  if (const auto path = live::parse_picture_path(text); path && path->view.size() > text.size()) std::abort();
+  if (const auto path = live::parse_picture_path(text, text); path && path->view.size() > text.size()) std::abort();
   try {
     live::parse_view_options(text);
   } catch (const std::runtime_error&) {

@@ -8,7 +8,7 @@ const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.
 export function address(path) {
-  return token ? `${path}?token=${encodeURIComponent(token)}` : path;
+  return token ? `${path}${path.includes("?") ? "&" : "?"}token=${encodeURIComponent(token)}` : path;
 }
 
 // `listeners`: functions by type of message; beside them `open` and `closed`. `isHeard()`: whether what is shown is new.

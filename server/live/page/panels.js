@@ -18,7 +18,7 @@ async function pngOf(jpeg) {
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// `view()`: of the world in 3D, or null. `jpeg(camera)`: its newest picture (pictures.js). `complain` is called with what is wrong, in words.
+// `view()`: of the world in 3D, or null. `jpeg(camera)`: a promise of its newest picture (pictures.js). `complain` is called with what is wrong, in words.
 export function createPanels({ world, driving, view, jpeg, complain }) {
   const history = createHistory(), chosen = () => driving.chosen;
   let bodies = "";
@@ -36,7 +36,7 @@ export function createPanels({ world, driving, view, jpeg, complain }) {
   }
   async function picture() {
     const figure = bigView.large();
-    if (figure) return { name: figure.dataset.camera, blob: await pngOf(jpeg(figure.dataset.camera)) };
+    if (figure) return { name: figure.dataset.camera, blob: await pngOf(await jpeg(figure.dataset.camera)) };
     if (!view()) throw new Error("the world is not drawn here");
     return { name: "3D", blob: await view().picture() };
   }

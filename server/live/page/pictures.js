@@ -1,11 +1,12 @@
 // What the cameras of the chosen robot see, and how old it is. A stream is closed when nobody sees it, so that the server draws nothing
-// for a hidden page. Nothing is fetched before start().
+// for a hidden page, and a picture in a place of half its width is drawn in that size. Nothing is fetched before start().
 import { readPictures } from "./picture_stream.js";
 
 const MOST = 4;            // a browser has six connections to one server
 const AGAIN_MS = 1000;     // after a stream broke
 const OLD_MS = 500;        // while time runs: something is too slow
 const KEPT = 200;          // frames whose time is known
+const RIGHT_SIZE_MS = 2000;   // so long a picture of the size that its place has by now is waited for
 
 // `bigView`: of big_view.js, which may have one of the pictures.
 export function createPictures(world, link, chosen, bigView) {
@@ -25,30 +26,46 @@ export function createPictures(world, link, chosen, bigView) {
     return performance.now() - seen_ms;
   }
 
-  function show(figure, part) {
+  function show(figure, part, size) {
     figure.jpeg = new Blob([part.jpeg], { type: "image/jpeg" });
     const url = URL.createObjectURL(figure.jpeg);
     const { picture } = figure, before = picture.src;
     picture.src = url;
     if (before) URL.revokeObjectURL(before);
-    figure.shown = { number: part.number, stamped_ms: performance.now() - part.age_ms };
+    figure.shown = { number: part.number, stamped_ms: performance.now() - part.age_ms, size };
+    figure.came?.();
   }
 
+  // Until the figure is gone; each stream until its size is no longer the right one.
   async function read(figure) {
-    while (!figure.ended.signal.aborted) {
+    while (!figure.gone) {
+      const stream = figure.stream = new AbortController(), { size } = figure;
       try {
-        await readPictures(figure.picture.dataset.stream, figure.ended.signal, (part) => show(figure, part));
+        await readPictures(`${figure.picture.dataset.stream}?size=${size}`, stream.signal, (part) => show(figure, part, size));
       } catch {
-        await new Promise((again) => setTimeout(again, AGAIN_MS));
+        if (!stream.signal.aborted) await new Promise((again) => setTimeout(again, AGAIN_MS));
       }
     }
   }
+  // The picture keeps its shape in the place that it has.
+  const sizeFor = ({ picture: { clientWidth, clientHeight }, width, height }) =>
+    Math.min(clientWidth, clientHeight * width / height) * devicePixelRatio <= width / 2 ? "half" : "full";
+  const places = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+      const figure = figures.find(({ picture }) => picture === target), size = figure && sizeFor(figure);
+      if (!figure || figure.size === size) continue;
+      figure.size = size;
+      if (figure.stream) figure.stream.abort(); else read(figure);
+    }
+  });
 
   function clear(words) {
     bigView.built([]);
-    for (const { ended, picture } of figures) {
-      ended.abort();
-      if (picture.src) URL.revokeObjectURL(picture.src);
+    places.disconnect();
+    for (const figure of figures) {
+      figure.gone = true;
+      figure.stream?.abort();
+      if (figure.picture.src) URL.revokeObjectURL(figure.picture.src);
     }
     figures = [];
     const none = document.createElement("p");
@@ -77,9 +94,9 @@ export function createPictures(world, link, chosen, bigView) {
       frame.dataset.camera = camera.name;
       frame.append(enlarge, caption);
       section.append(frame);
-      const figure = { camera: camera.name, picture, jpeg: null, age, ended: new AbortController(), seen_s: new Map(), shown: null };
-      read(figure);
-      return figure;
+      const { width, height } = camera;
+      places.observe(picture);
+      return { camera: camera.name, width, height, picture, jpeg: null, age, size: null, stream: null, gone: false, seen_s: new Map(), shown: null };
     });
     bigView.built([...section.children]);
   }
@@ -111,8 +128,14 @@ export function createPictures(world, link, chosen, bigView) {
   update();
   return {
     update,
-    // The newest picture of that camera, a Blob; null: it has sent none yet.
-    jpeg: (camera) => figures.find((figure) => figure.camera === camera)?.jpeg ?? null,
+    // The newest picture of that camera, a Blob; null: it has sent none yet. Of one that has just been enlarged, the first whole one.
+    async jpeg(camera) {
+      const figure = figures.find((each) => each.camera === camera), until_ms = performance.now() + RIGHT_SIZE_MS;
+      while (figure?.shown && figure.shown.size !== sizeFor(figure) && performance.now() < until_ms) {
+        await new Promise((again) => { figure.came = again; setTimeout(again, RIGHT_SIZE_MS); });
+      }
+      return figure?.jpeg ?? null;
+    },
     oldest_ms: () => Math.max(0, ...ages_ms()),
     start() {
       started = true;

@@ -79,11 +79,12 @@ TEST_CASE("In a browser: both cameras' pictures are shown, turned by keys, and n
   const char* shown =
       "(() => { const pictures = [...document.querySelectorAll('#pictures img')];"
       "  return pictures.length === 2 && pictures.every((picture) => {"
-      "    if (picture.naturalWidth !== 640 || picture.naturalHeight !== 480) return false;"
-      "    const canvas = document.createElement('canvas'); canvas.width = 640; canvas.height = 480;"
+      "    const { naturalWidth: width, naturalHeight: height } = picture;"
+      "    if (!width) return false;"
+      "    const canvas = document.createElement('canvas'); canvas.width = width; canvas.height = height;"
       "    const context = canvas.getContext('2d'); context.drawImage(picture, 0, 0);"
-      "    const pixels = context.getImageData(320, 0, 1, 480).data;"
-      "    return new Set(Array.from({ length: 480 }, (_, row) => pixels[4 * row])).size > 20; }); })()";
+      "    const pixels = context.getImageData(width / 2, 0, 1, height).data;"
+      "    return new Set(Array.from({ length: height }, (_, row) => pixels[4 * row])).size > 20; }); })()";
   desk.browser.wait_for(shown);
   const char* ages = "[...document.querySelectorAll('#pictures output')].every((age) => / ms$/.test(age.textContent))";
   desk.browser.wait_for(ages);
@@ -124,13 +125,34 @@ TEST_CASE("In a browser: both cameras' pictures are shown, turned by keys, and n
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
 }
 
+TEST_CASE(
+    "In a browser: a picture is drawn in half its size where its place is that small, and whole where it is large") {
+  Desk desk;
+  desk.place();
+  const auto size_is = [&](const std::string& picture, const std::string& size) {
+    desk.browser.wait_for(
+        "(({ naturalWidth, naturalHeight }) => naturalWidth + 'x' + naturalHeight)(document.querySelector('" + picture +
+        " img')) === '" + size + "'");
+  };
+  size_is("#pictures figure:nth-child(1)", "320x240");
+  size_is("#pictures figure:nth-child(2)", "320x240");
+  desk.browser.click("#pictures figure:nth-child(2)");
+  size_is("#view > figure", "640x480");
+  size_is("#pictures figure:nth-child(1)", "320x240");
+  const char* age = "/^[0-9]+ ms$/.test(document.querySelector('#view > figure output').textContent)";
+  desk.browser.wait_for(age);
+  desk.browser.click("#small-world");
+  size_is("#pictures figure:nth-child(2)", "320x240");
+  CHECK(desk.browser.complaints().empty());
+}
+
 TEST_CASE("In a browser: of two robots of one name each shows its own pictures") {
   Desk desk;
   support::UsarsimClient one(desk.world.usarsim_port()), two(desk.world.usarsim_port());
   one.send("INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Location 0,0,0}\r\n");
   two.send("INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Location 0,3,0}\r\n");
   desk.browser.wait_for("document.getElementById('robot').options.length === 2");
-  const std::string shown = "document.querySelector('#pictures img')?.naturalWidth === 640";
+  const std::string shown = "document.querySelector('#pictures img')?.naturalWidth > 0";
   const auto address = [&] {
     return desk.browser.evaluate("document.querySelector('#pictures img').dataset.stream").get<std::string>();
   };

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -67,10 +68,12 @@ camera::Picture picture_in(const std::string& jpeg) {
 
 }  // namespace
 
-TEST_CASE("A picture's path names a camera, alone or of a robot") {
-  const auto path = [](std::string_view text) {
-    const auto found = parse_picture_path(text);
-    return found ? found->view + (found->stream ? " stream" : " picture") : std::string("none");
+TEST_CASE("A picture's path names a camera, alone or of a robot, and its query a size") {
+  const auto path = [](std::string_view text, std::string_view query = "") {
+    const auto found = parse_picture_path(text, query);
+    if (!found) return std::string("none");
+    const bool is_half = found->size == image_server::PictureSize::half;
+    return found->view + (is_half ? " half" : "") + (found->stream ? " stream" : " picture");
   };
   CHECK(path("/Camera.mjpg") == "Camera stream");
   CHECK(path("/R1/Camera.jpg") == "R1/Camera picture");
@@ -79,6 +82,9 @@ TEST_CASE("A picture's path names a camera, alone or of a robot") {
   CHECK(path("/%4.jpg") == "%4 picture");
   CHECK(path("/100%zz.jpg") == "100%zz picture");
   for (const char* none : {"", "/", "/.jpg", "Camera.jpg", "/Camera", "/Camera.jpg/"}) CHECK(path(none) == "none");
+  CHECK(path("/Camera.mjpg", "size=half&token=1") == "Camera half stream");
+  CHECK(path("/Camera.jpg", "token=1&size=full") == "Camera picture");
+  for (const char* none : {"size=huge", "size=HALF", "size=half "}) CHECK(path("/Camera.jpg", none) == "none");
 }
 
 TEST_CASE("One picture: a JPEG, its number, its robot time and its age") {
@@ -135,6 +141,46 @@ TEST_CASE("A stream: each part a newer picture, until the robot leaves") {
         for (;;) stream.part();
       }(),
       Catch::Contains("closed"));
+}
+
+TEST_CASE("A picture of half the size shows the same moment under the same number") {
+  ServedWorld world;
+  support::UsarsimClient program(world.usarsim_port());
+  program.send(placed_robot("R1"));
+  program.line_that_begins("STA");
+  Stream full(world.port(), "/camera/Camera.mjpg");
+  full.part();
+  program.send("CONTROL {Type Pause}\r\n");
+
+  // While time stands, one that nobody has asked for before is of the moment that the other one shows.
+  Stream half(world.port(), "/camera/Camera.mjpg?size=half");
+  const Part small = half.part();
+  CHECK(picture_in(small.bytes).width == 320);
+  CHECK(picture_in(small.bytes).height == 240);
+  Part large = full.part();
+  while (std::stoul(header(large.headers, "X-Frame-Number")) < std::stoul(header(small.headers, "X-Frame-Number")))
+    large = full.part();
+  CHECK(picture_in(large.bytes).width == 640);
+  CHECK(header(large.headers, "X-Frame-Number") == header(small.headers, "X-Frame-Number"));
+  CHECK(header(large.headers, "X-Robot-Time") == header(small.headers, "X-Robot-Time"));
+
+  // Once time runs again, too.
+  program.send("CONTROL {Type Resume}\r\n");
+  std::map<std::string, std::string> time_of;
+  for (int i = 0; i < 20; ++i) {
+    const Part part = full.part();
+    time_of[header(part.headers, "X-Frame-Number")] = header(part.headers, "X-Robot-Time");
+  }
+  int same = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Part part = half.part();
+    const auto found = time_of.find(header(part.headers, "X-Frame-Number"));
+    if (found == time_of.end()) continue;
+    ++same;
+    CHECK(found->second == header(part.headers, "X-Robot-Time"));
+  }
+  CHECK(same > 0);
+  CHECK(whole_answer(world, "/camera/Camera.jpg?size=huge").find("?size=half") != std::string::npos);
 }
 
 TEST_CASE("Pictures need the token, and are not for other servers' pages") {
