@@ -37,8 +37,8 @@ void Clock::stepped() {
   if (!paused_ && speed_ > 0) owed_s_ -= time_step_s_;
 }
 
-double Clock::next_step_wall_s() const {
-  return speed_ == 0 ? wall_s_ : wall_s_ + std::max(0.0, time_step_s_ - owed_s_) / speed_;
+double Clock::step_wall_s(std::uint64_t count) const {
+  return speed_ == 0 ? wall_s_ : wall_s_ + std::max(0.0, static_cast<double>(count) * time_step_s_ - owed_s_) / speed_;
 }
 
 }  // namespace kenaf::world_server

@@ -3,6 +3,8 @@
 // Pure: wall-clock time comes in as an argument, in seconds of any steady clock. Thread safety: a value.
 #pragma once
 
+#include <cstdint>
+
 namespace kenaf::world_server {
 
 class Clock {
@@ -25,8 +27,8 @@ class Clock {
   void skip(double wall_s);
   bool step_due() const;
   void stepped();
-  // Time of the next step, if none is due now and the clock is not paused.
-  double next_step_wall_s() const;
+  // Time of the `count`-th step from now, from 1 on, if none is due now and the clock is not paused.
+  double step_wall_s(std::uint64_t count) const;
 
  private:
   double time_step_s_;

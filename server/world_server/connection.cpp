@@ -77,6 +77,7 @@ void Connection::pause() {
 void Connection::take(std::string_view bytes) {
   if (!open_) return;
   try {
+    simulation_.catch_up(steady_seconds());
     const bool more = simulation_.receive(session_, bytes, steady_seconds());
     flush();
     if (!open_) return;

@@ -18,6 +18,7 @@ class FrameSchedule {
   void set_lockstep(bool lockstep);
 
   std::uint64_t period_steps() const { return period_steps_; }
+  std::uint64_t next_step() const { return next_step_; }  // of the next output, which may have to wait for an answer
   bool numbered() const { return numbered_; }
   bool lockstep() const { return lockstep_; }
   std::uint64_t frame() const { return frame_; }  // the newest one sent, 0 = none yet

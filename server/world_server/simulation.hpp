@@ -66,7 +66,13 @@ struct Simulation {
   // Sends the outputs due, and runs one step of the world if allowed. Whatever fails, memory above all, ends a session,
   // and neither throws nor concerns the others: the session for which it was done, or, if the step itself failed, that
   // of the robot placed last.
+  //
+  // Steps that nobody sees happen may be made together, up to 5 ms late: the wake-up is for the next output or
+  // call_at().
   Progress advance(double wall_s);
+  // Makes the steps that are due since such a wake-up was named. To be called before anything from outside is carried
+  // out, which would otherwise take effect before them. Fails like advance().
+  void catch_up(double wall_s);
 
   // Returns the description for a class name; nullptr if there is none (logged).
   const physics::RobotDescription* description_for_class(std::string_view class_name);
@@ -132,11 +138,13 @@ struct Simulation {
   void tell_fault(Session& session);
   void tell_of_crowd();
   bool held_by_lockstep(std::optional<double>& until_wall_s);
+  std::uint64_t steps_to_next_event() const;
 
   std::map<std::string, physics::RobotDescription, std::less<>> descriptions_;  // by shipped name or file
   std::vector<StepRequest> step_requests_;
   std::vector<Call> calls_;
   std::uint64_t next_call_step_ = kNever;
+  std::uint64_t steps_left_ = 0;  // to be made together at the next wake-up
   std::uint32_t last_session_ = 0;
   std::string deferred_lines_;  // scratch of send_due()
   protocol::LogLimiter behind_log_{1, 10};

@@ -260,6 +260,7 @@ void WorldServer::stop() {
 void WorldServer::ask(std::function<void(Simulation&)> request) {
   asio::post(impl_->io, [this, request = std::move(request)] {
     if (impl_->stopping) return;
+    impl_->simulation.catch_up(steady_seconds());
     impl_->simulation.wall_s = steady_seconds();
     request(impl_->simulation);
   });

@@ -75,7 +75,8 @@ TEST_CASE("The clock says when the next step falls due") {
   clock.pass(7);
   // 2 ms of robot time take 4 ms at half speed; 1 ms of them has passed.
   clock.pass(7.001);
-  CHECK(clock.next_step_wall_s() == Approx(7.004));
+  CHECK(clock.step_wall_s(1) == Approx(7.004));
+  CHECK(clock.step_wall_s(3) == Approx(7.012));
 }
 
 TEST_CASE("A very slow clock still gets to its next step") {

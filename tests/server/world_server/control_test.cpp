@@ -114,7 +114,38 @@ TEST_CASE("No time passes, and nothing is owed, while no robot is there") {
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   talk.simulation.advance(talk.wall_s);
   CHECK(talk.simulation.world.step_count() == 0);
-  CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(talk.wall_s + 0.001));
+  CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(talk.wall_s + 0.005));
+}
+
+TEST_CASE("The world sleeps until somebody is told something, at most 5 ms, and who asks finds it up to date") {
+  ServerOptions options = fast();
+  options.speed = 1;
+  Conversation talk(options);
+  talk.send("INIT {ClassName USARBot.Kenaf}\r\n");
+  talk.simulation.advance(talk.wall_s);
+  const double start_s = talk.wall_s;
+  CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(start_s + 0.005));
+
+  // 3.5 ms later three steps of 1 ms are due, which nobody has seen.
+  talk.wall_s = start_s + 0.0035;
+  CHECK(talk.simulation.world.step_count() == 0);
+  talk.simulation.catch_up(talk.wall_s);
+  CHECK(talk.simulation.world.step_count() == 3);
+  talk.simulation.catch_up(talk.wall_s);
+  CHECK(talk.simulation.world.step_count() == 3);
+
+  // Who is to be called after the sixth step is called at its time.
+  std::uint64_t called_at = 0;
+  talk.simulation.call_at(&called_at, 6, [&](Simulation& then) { called_at = then.world.step_count(); });
+  CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(start_s + 0.006));
+  talk.wall_s = start_s + 0.006;
+  while (talk.simulation.advance(talk.wall_s).stepped) {
+  }
+  CHECK(called_at == 6);
+
+  // And so is a client that gets an output every 2 ms.
+  talk.send("CONTROL {Type Session} {Period 0.002}\r\n");
+  CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(start_s + 0.008));
 }
 
 TEST_CASE("A reset puts the robot back to its start, at rest, at time 0, and the frames go on") {
