@@ -159,21 +159,15 @@ def open_page(browser, port):
                      "[...document.querySelectorAll('#pictures img')].every((picture) => picture.naturalWidth)")
 
 
-def press(browser, code, down):
-    space = {'text': ' ', 'windowsVirtualKeyCode': 32} if code == 'Space' and down else {}
-    browser.call('Input.dispatchKeyEvent', type='keyDown' if space else 'rawKeyDown' if down else 'keyUp', code=code,
-                 key=' ' if code == 'Space' else code, **space)
-
-
 def rest_after_ms(browser, drive, by_space):
     browser.evaluate('bench.released_ms = bench.ordered_ms = bench.rested_ms = null')
-    press(browser, drive, True)
+    browser.key(drive, True)
     browser.wait_for('bench.speed_mps > 0.2')
-    press(browser, 'Space' if by_space else drive, by_space)
+    browser.key('Space' if by_space else drive, by_space)
     browser.wait_for('bench.rested_ms !== null')
     if by_space:
-        press(browser, 'Space', False)
-        press(browser, drive, False)
+        browser.key('Space', False)
+        browser.key(drive, False)
     browser.wait_for("document.getElementById('drive-state').dataset.state === 'held'")
     return browser.evaluate('[bench.ordered_ms - bench.released_ms, bench.rested_ms - bench.released_ms]')
 
@@ -234,7 +228,7 @@ def measure_cost(port, pid, seconds):
         browser.evaluate(STAND_STILL)
         for moves, key in ('stands', None), ('turns', 'KeyA'):  # what turns is drawn at each exposure
             if key:
-                press(browser, key, True)
+                browser.key(key, True)
                 browser.wait_for('bench.speed_mps > 0.1')
             pictures = browser.evaluate('bench.pictures')
             with_page = cores()

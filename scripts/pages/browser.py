@@ -107,7 +107,10 @@ class Browser:
         self.wait_for(f"matchMedia('(prefers-color-scheme: {scheme})').matches")
 
     def key(self, code, down):
-        self.call('Input.dispatchKeyEvent', type='rawKeyDown' if down else 'keyUp', code=code, key=code)
+        """`code` is a KeyboardEvent's. Space also types its character, so that it presses a button that has the focus."""
+        space = {'text': ' ', 'windowsVirtualKeyCode': 32} if code == 'Space' and down else {}
+        self.call('Input.dispatchKeyEvent', type='keyDown' if space else 'rawKeyDown' if down else 'keyUp', code=code,
+                  key=' ' if code == 'Space' else code, **space)
 
     def press(self, code):
         self.key(code, True)
