@@ -17,7 +17,7 @@
 #include "camera/jpeg.hpp"
 #include "server/image_server/drawing.hpp"
 #include "server/image_server/exposure.hpp"
-#include "server/image_server/view_name.hpp"
+#include "server/image_server/view_board.hpp"
 
 namespace kenaf::image_server {
 
@@ -26,18 +26,12 @@ namespace asio = boost::asio;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using FramePtr = std::shared_ptr<const Frame>;
 
 // Robots come and go and readers lose interest even while time is stopped: period of the check in that case.
 constexpr std::chrono::milliseconds kLookAnyway{100};
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
-}
-
-template <typename Value>
-bool any_of(const BySize<Value>& values) {
-  return std::ranges::any_of(values, [](const Value& value) { return static_cast<bool>(value); });
 }
 
 // State that the world's thread needs to answer, even if the feed is gone by then.
@@ -64,11 +58,12 @@ struct Feed::Implementation {
   void wake();
   void ask(bool at_once);
   void take(std::shared_ptr<Exposure> exposure);
-  void settle_views(const Exposure& exposure);
+  void settle(const WantedSizes& wanted, const std::vector<camera::RobotSnapshot>& robots);
   struct Due {
     CameraId id;
     BySize<bool> sizes;
   };
+  std::vector<Due> due_at(const Exposure& exposure);
   void draw(const Exposure& exposure, const std::vector<Due>& due);
   FramePtr draw_one(const Exposure& exposure, std::size_t robot, std::size_t camera, PictureSize size);
   void stand_still(CameraId id, const std::string& why);
@@ -76,26 +71,11 @@ struct Feed::Implementation {
   void publish_due();
   void fall_asleep();
   void tell();
-  bool make_room();
 
   world_server::WorldServer& world;
 
-  // For any thread, with the mutex.
-  struct View {
-    Clock::time_point since;                          // the first request
-    BySize<std::optional<Clock::time_point>> wanted;  // the last one for each size, if any
-    std::optional<CameraId> camera;
-    std::string none;
-
-    Clock::time_point last_wanted() const { return std::ranges::max(wanted).value_or(since); }
-  };
-  struct Shown {
-    BySize<FramePtr> newest;
-    std::string fault;
-  };
-  mutable std::mutex mutex;
-  std::map<std::string, View, std::less<>> views;
-  std::map<CameraId, Shown> shown;  // of the cameras being drawn
+  // For any thread.
+  ViewBoard board;
   std::mutex listeners_mutex;
   std::map<std::uint64_t, std::function<void()>> listeners;
   std::uint64_t last_listener = 0;
@@ -182,39 +162,12 @@ void Feed::Implementation::ask(bool at_once) {
 void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
   if (!awake) return;
   const bool newest = exposure->asked == asked;
-  settle_views(*exposure);
-  const Clock::duration waited = Clock::now() - exposure->wall;
-  const bool time_stands = taken_step == exposure->step;
-  taken_step = exposure->step;
-  std::vector<Due> due;
-  bool wanted = false;
-  for (auto& [id, camera] : drawn) {
-    wanted = wanted || any_of(camera.wanted);
-    if (!any_of(camera.wanted) || camera.faulty) continue;
-    if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) {
-      // Where time stands, a size that is new waits for no exposure.
-      const BySize<bool> missing = camera.missing();
-      if (!time_stands || !any_of(missing)) continue;
-      if (camera.last_step == exposure->step) {
-        due.push_back({id, missing});
-        continue;
-      }
-    }
-    // Half a period late already: the next one is fresher. Never twice in a row, or a busy machine would show nothing.
-    const bool late = camera.last && exposure->speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure->speed));
-    camera.left_out = late && !camera.left_out;
-    if (!camera.left_out) due.push_back({id, camera.wanted});
-    const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
-    // after a reset time restarts, while numbers continue
-    camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
-    camera.last = tick;
-    camera.last_step = exposure->step;
-    camera.last_wall = exposure->wall;
-  }
-  {
-    const std::lock_guard lock(mutex);
-    if (views.empty() && !wanted) return fall_asleep();
-  }
+  const ViewBoard::Settled views = board.settle(*exposure);
+  settle(views.wanted, exposure->world.robots);
+  if (views.changed) tell();
+  const std::vector<Due> due = due_at(*exposure);
+  const bool wanted = std::ranges::any_of(drawn, [](const auto& entry) { return any_of(entry.second.wanted); });
+  if (!wanted && board.is_empty()) return fall_asleep();
   // If the clock sets the pace, request the next exposure before drawing this one: even if drawing is late, the request
   // is not.
   if (newest && exposure->speed > 0) ask(false);
@@ -223,34 +176,39 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
   spare = std::move(exposure);
 }
 
-// Forgets views nobody requests any more, and determines what the others show.
-void Feed::Implementation::settle_views(const Exposure& exposure) {
-  const auto& robots = exposure.world.robots;
-  std::map<CameraId, BySize<bool>> wanted;
-  bool changed = false;
-  {
-    const std::lock_guard lock(mutex);
-    const Clock::time_point forgotten = Clock::now() - seconds(kWanted_s);
-    std::erase_if(views, [&](const auto& entry) { return entry.second.last_wanted() < forgotten; });
-    for (auto& [name, view] : views) {
-      const auto camera = find_view(robots, name);
-      // An exposure from before the request may lack a robot that has come since; the next one is on its way.
-      if (!camera && exposure.wall < view.since) continue;
-      std::string none = camera ? std::string() : no_such_view(robots, name);
-      changed = changed || camera != view.camera || none != view.none;
-      view.camera = camera;
-      view.none = std::move(none);
-      if (!camera) continue;
-      BySize<bool>& sizes = wanted[*camera];
-      for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = sizes[i] || view.wanted[i] >= forgotten;
+// The cameras that expose now, with the sizes in which to draw them.
+std::vector<Feed::Implementation::Due> Feed::Implementation::due_at(const Exposure& exposure) {
+  const Clock::duration waited = Clock::now() - exposure.wall;
+  const bool time_stands = taken_step == exposure.step;
+  taken_step = exposure.step;
+  std::vector<Due> due;
+  for (auto& [id, camera] : drawn) {
+    if (!any_of(camera.wanted) || camera.faulty) continue;
+    if (!exposes_at({camera.rate_hz, camera.last}, exposure.step, exposure.time_step_s)) {
+      // Where time stands, a size that is new waits for no exposure.
+      const BySize<bool> missing = camera.missing();
+      if (!time_stands || !any_of(missing)) continue;
+      if (camera.last_step == exposure.step) {
+        due.push_back({id, missing});
+        continue;
+      }
     }
-    std::erase_if(shown, [&](const auto& entry) { return !wanted.contains(entry.first); });
-    for (const auto& [id, sizes] : wanted) {
-      Shown& of_camera = shown[id];
-      for (std::size_t i = 0; i < sizes.size(); ++i)
-        if (!sizes[i]) of_camera.newest[i].reset();
-    }
+    // Half a period late already: the next one is fresher. Never twice in a row, or a busy machine would show nothing.
+    const bool late = camera.last && exposure.speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure.speed));
+    camera.left_out = late && !camera.left_out;
+    if (!camera.left_out) due.push_back({id, camera.wanted});
+    const Tick tick = tick_at(exposure.step, exposure.time_step_s, camera.rate_hz);
+    // after a reset time restarts, while numbers continue
+    camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
+    camera.last = tick;
+    camera.last_step = exposure.step;
+    camera.last_wall = exposure.wall;
   }
+  return due;
+}
+
+// Starts and ends the drawing of cameras by who looks at them.
+void Feed::Implementation::settle(const WantedSizes& wanted, const std::vector<camera::RobotSnapshot>& robots) {
   const auto wanted_of = [&](const CameraId& id) {
     const auto found = wanted.find(id);
     return found == wanted.end() ? BySize<bool>{} : found->second;
@@ -271,7 +229,6 @@ void Feed::Implementation::settle_views(const Exposure& exposure) {
     camera.last.reset();
     camera.faulty = false;
   }
-  if (changed) tell();
 }
 
 void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Due>& due) {
@@ -320,10 +277,7 @@ FramePtr Feed::Implementation::draw_one(const Exposure& exposure, std::size_t ro
 void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
   spdlog::error("camera {} of robot {} stopped: {}", id.camera, static_cast<std::uint32_t>(id.robot), why);
   drawn.at(id).faulty = true;
-  {
-    const std::lock_guard lock(mutex);
-    if (const auto found = shown.find(id); found != shown.end()) found->second.fault = "no picture: " + why;
-  }
+  board.stop(id, why);
   tell();
 }
 
@@ -344,22 +298,13 @@ void Feed::Implementation::publish_due() {
   bool published = false;
   const Clock::time_point now = Clock::now();
   Clock::time_point next = Clock::time_point::max();
-  {
-    const std::lock_guard lock(mutex);
-    for (const Waiting& entry : waiting) {
-      if (entry.until > now) {
-        next = std::min(next, entry.until);
-        continue;
-      }
-      const auto found = shown.find(entry.frame->id);
-      if (found == shown.end()) continue;
-      FramePtr& newest = found->second.newest[index_of(entry.frame->size)];
-      if (!newest || newest->number < entry.frame->number) newest = entry.frame;
+  for (const Waiting& entry : waiting) {
+    if (entry.until > now)
+      next = std::min(next, entry.until);
+    else if (board.show(entry.frame))
       published = true;
-    }
   }
 
-  // Listeners are notified without the mutex: they call look().
   std::erase_if(waiting, [&](const Waiting& entry) { return entry.until <= now; });
   if (published) tell();
   if (waiting.empty()) return;
@@ -369,7 +314,7 @@ void Feed::Implementation::publish_due() {
   });
 }
 
-// Called with the mutex held: a request from now on wakes it again.
+// The first request from now on wakes it again.
 void Feed::Implementation::fall_asleep() {
   awake = false;
   waiting.clear();
@@ -382,18 +327,6 @@ void Feed::Implementation::fall_asleep() {
 void Feed::Implementation::tell() {
   const std::lock_guard lock(listeners_mutex);
   for (const auto& [number, notify] : listeners) notify();
-}
-
-// Called with the mutex held: forgets the oldest view that shows no camera. Returns false if all show one.
-bool Feed::Implementation::make_room() {
-  auto oldest = views.end();
-  for (auto entry = views.begin(); entry != views.end(); ++entry) {
-    if (entry->second.camera) continue;
-    if (oldest == views.end() || entry->second.last_wanted() < oldest->second.last_wanted()) oldest = entry;
-  }
-  if (oldest == views.end()) return false;
-  views.erase(oldest);
-  return true;
 }
 
 Feed::Feed(world_server::WorldServer& world) : impl_(std::make_unique<Implementation>(world)) {
@@ -423,45 +356,14 @@ Feed::~Feed() {
 }
 
 Feed::Look Feed::look(std::string_view view, PictureSize size) {
-  // Finds or creates the view, and notes that it is wanted now.
-  Look out;
-  bool is_new = false;
-  {
-    const std::lock_guard lock(impl_->mutex);
-    auto found = impl_->views.find(view);
-    if (found == impl_->views.end()) {
-      if (impl_->views.size() >= kMostViews && !impl_->make_room())
-        return {nullptr, "too many cameras are requested at the same time"};
-      found = impl_->views.emplace(view, Implementation::View{}).first;
-      found->second.since = Clock::now();
-      is_new = true;
-    }
-    Implementation::View& entry = found->second;
-    entry.wanted[index_of(size)] = Clock::now();
-    // Its camera's newest frame, and why there is none or no newer one.
-    out.none = entry.none;
-    if (entry.camera) {
-      if (const auto shown = impl_->shown.find(*entry.camera); shown != impl_->shown.end()) {
-        out.frame = shown->second.newest[index_of(size)];
-        out.none = shown->second.fault;
-      }
-    }
-  }
-
+  ViewBoard::Look out = impl_->board.look(view, size);
   // wake() belongs to the feed's thread.
-  if (is_new) asio::post(impl_->io, [feed = impl_.get()] { feed->wake(); });
-  return out;
+  if (out.is_new) asio::post(impl_->io, [feed = impl_.get()] { feed->wake(); });
+  return std::move(out.seen);
 }
 
 std::vector<std::shared_ptr<const Frame>> Feed::newest() const {
-  std::vector<FramePtr> out;
-  const std::lock_guard lock(impl_->mutex);
-  for (const auto& [id, shown] : impl_->shown) {
-    const auto& [full, half] = shown.newest;
-    const FramePtr& newest = !full || (half && half->number > full->number) ? half : full;
-    if (newest) out.push_back(newest);
-  }
-  return out;
+  return impl_->board.newest();
 }
 
 std::shared_ptr<void> Feed::listen(std::function<void()> notify) {
