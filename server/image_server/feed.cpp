@@ -29,6 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 // Robots come and go and readers lose interest even while time is stopped: period of the check in that case.
 constexpr std::chrono::milliseconds kLookAnyway{100};
+constexpr double kFar_hz = 5;  // a reader waits for a picture from a slower camera
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
@@ -185,9 +186,10 @@ std::vector<Feed::Implementation::Due> Feed::Implementation::due_at(const Exposu
   for (auto& [id, camera] : drawn) {
     if (!any_of(camera.wanted) || camera.faulty) continue;
     if (!exposes_at({camera.rate_hz, camera.last}, exposure.step, exposure.time_step_s)) {
-      // Where time stands, a size that is new waits for no exposure.
+      // Where the next exposure is far, a size that is new does not wait for it.
+      const bool is_far = time_stands || (exposure.speed > 0 && camera.rate_hz * exposure.speed < kFar_hz);
       const BySize<bool> missing = camera.missing();
-      if (!time_stands || !any_of(missing)) continue;
+      if (!is_far || !any_of(missing)) continue;
       if (camera.last_step == exposure.step) {
         due.push_back({id, missing});
         continue;

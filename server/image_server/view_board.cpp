@@ -10,6 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr auto kWanted = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(Feed::kWanted_s));
+
 }  // namespace
 
 ViewBoard::Time ViewBoard::View::last_wanted() const {
@@ -26,10 +28,12 @@ ViewBoard::Look ViewBoard::look(std::string_view view, PictureSize size) {
       return {{nullptr, "too many cameras are requested at the same time"}};
     found = views_.emplace(view, View{}).first;
     found->second.since = Clock::now();
-    out.is_new = true;
   }
   View& entry = found->second;
-  entry.wanted[index_of(size)] = Clock::now();
+  std::optional<Time>& wanted = entry.wanted[index_of(size)];
+  const Time now = Clock::now();
+  out.is_new = wanted < now - kWanted;
+  wanted = now;
 
   // Its camera's newest frame, and why there is none or no newer one.
   out.seen.none = entry.none;
@@ -68,8 +72,7 @@ ViewBoard::Settled ViewBoard::settle(const Exposure& exposure) {
   const auto& robots = exposure.world.robots;
   Settled out;
   const std::lock_guard lock(mutex_);
-  const Time forgotten =
-      Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(Feed::kWanted_s));
+  const Time forgotten = Clock::now() - kWanted;
   std::erase_if(views_, [&](const auto& entry) { return entry.second.last_wanted() < forgotten; });
   for (auto& [name, view] : views_) {
     const auto camera = find_view(robots, name);

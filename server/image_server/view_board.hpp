@@ -30,7 +30,7 @@ bool any_of(const BySize<Value>& values) {
 // Thread safety: any function from any thread; they wait only for each other.
 class ViewBoard {
  public:
-  // For readers: as Feed::look(). `is_new`: the feed's thread has not settled this view yet.
+  // For readers: as Feed::look(). `is_new`: nobody has requested this view in this size lately.
   struct Look {
     Feed::Look seen;
     bool is_new = false;

@@ -38,6 +38,7 @@ void Connection::start() {
 void Connection::read() {
   socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](error_code error, std::size_t count) {
     if (!self->open_) return;
+    self->simulation_.catch_up(steady_seconds());
     if (error) return self->close();
     self->heard_s_ = steady_seconds();
     self->take({self->received_.data(), count});
@@ -77,7 +78,6 @@ void Connection::pause() {
 void Connection::take(std::string_view bytes) {
   if (!open_) return;
   try {
-    simulation_.catch_up(steady_seconds());
     const bool more = simulation_.receive(session_, bytes, steady_seconds());
     flush();
     if (!open_) return;

@@ -202,6 +202,7 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
     steps_left_ = steps_to_next_event();
     return {false, clock.step_wall_s(steps_left_)};
   }
+  steps_left_ = 0;
   std::optional<double> until_wall_s;
   if (held_by_lockstep(until_wall_s)) {
     dropped_s_ = 0;  // the client causes the delay
@@ -228,12 +229,14 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
   return {true, std::nullopt};
 }
 
-// A system of a thousand wake-ups a second spends most of its time on waking up. Longer than this, and a program's
-// order would wait for a burst of steps.
+// A system of a thousand wake-ups a second spends most of its time on waking up. With more time or steps in one, a
+// program's order would wait for a long burst.
 std::uint64_t Simulation::steps_to_next_event() const {
   constexpr double kLongestSleep_s = 0.005;
+  constexpr std::uint64_t kMostSteps = 20;
   const std::uint64_t now = world.step_count();
-  std::uint64_t next = std::min(next_call_step_, now + steps_for(kLongestSleep_s * clock.speed()));
+  std::uint64_t next = now + std::min(kMostSteps, steps_for(kLongestSleep_s * clock.speed()));
+  next = std::min(next, next_call_step_);
   for (const auto& session : sessions)
     if (session->robot && !session->placed_by_operator) next = std::min(next, session->schedule.next_step());
   return std::max(next, now + 1) - now;
@@ -302,16 +305,23 @@ void Simulation::call_at(const void* owner, std::uint64_t step, std::function<vo
   call_due(world.step_count());
 }
 
-// The calls may request further calls.
+// The calls may request further calls, which are added at the end and are not called here. One that fails keeps neither
+// the others nor the world from going on.
 void Simulation::call_due(std::uint64_t step) {
-  std::vector<Call> due;
-  for (const Call& call : calls_) {
-    if (call.step <= step) due.push_back(call);
+  const auto is_due = [step](const Call& call) { return call.step <= step; };
+  for (auto left = std::ranges::count_if(calls_, is_due); left > 0; --left) {
+    const auto due = std::ranges::find_if(calls_, is_due);
+    if (due == calls_.end()) break;
+    const Call call = std::move(*due);
+    calls_.erase(due);
+    try {
+      call.then(*this);
+    } catch (const std::exception& failure) {
+      spdlog::error("a call at step {} failed: {}", call.step, failure.what());
+    }
   }
-  std::erase_if(calls_, [step](const Call& call) { return call.step <= step; });
   next_call_step_ = kNever;
   for (const Call& call : calls_) next_call_step_ = std::min(next_call_step_, call.step);
-  for (const Call& call : due) call.then(*this);
 }
 
 void Simulation::reset() {

@@ -70,8 +70,8 @@ struct Simulation {
   // Steps that nobody sees happen may be made together, up to 5 ms late: the wake-up is for the next output or
   // call_at().
   Progress advance(double wall_s);
-  // Makes the steps that are due since such a wake-up was named. To be called before anything from outside is carried
-  // out, which would otherwise take effect before them. Fails like advance().
+  // Makes the steps that are due since such a wake-up was named, at most 20. To be called before anything from outside
+  // is carried out, which would otherwise take effect before them. Fails like advance().
   void catch_up(double wall_s);
 
   // Returns the description for a class name; nullptr if there is none (logged).

@@ -153,6 +153,7 @@ bool WorldServer::Implementation::make_room() {
 }
 
 void WorldServer::Implementation::watch_peers() {
+  simulation.catch_up(steady_seconds());
   for (const auto& connection : connections) connection->watch_peer();
   next_watch.expires_after(kWatchPeersEvery);
   next_watch.async_wait([this](error_code) { watching = false; });  // run() watches on while anybody is connected

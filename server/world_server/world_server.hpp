@@ -36,8 +36,8 @@ class WorldServer {
   // May be called from any thread, at any time; run() returns soon, or at once if called later.
   void stop();
   // May be called from any thread, at any time: the thread in run() carries out `request` between two steps of the
-  // world, within about half a millisecond, even while time is stopped. Never after run() has returned. The world waits
-  // for the request, which must take only microseconds.
+  // world, within about half a millisecond, even while time is stopped, after the steps that are due. Never after run()
+  // has returned. The world waits for the request, which must take only microseconds.
   void ask(std::function<void(Simulation&)> request);
 
  private:

@@ -42,6 +42,7 @@ export function createBigView(past, letGo) {
   function enlarge(figure) {
     restore();
     if (!figure) return;
+    big.whenCamera();
     if (!withoutWorld()) {
       figure.replaceWith(small);
       small.prepend(canvas);
@@ -90,7 +91,10 @@ export function createBigView(past, letGo) {
     event.stopPropagation();
   }, { capture: true });
 
-  return {
+  const big = {
+    // Set by who points at the world: before a camera's picture takes its place.
+    whenCamera() {},
+    showWorld() { if (large) choose(null); },
     // Before the cameras' pictures take the world's place.
     restore,
     // These are the cameras' figures from now on; called before they are taken away, too.
@@ -102,4 +106,5 @@ export function createBigView(past, letGo) {
     // The camera's figure whose picture is the large one, or null: the world's.
     large: () => large ?? (withoutWorld() ? figures[0] ?? null : null),
   };
+  return big;
 }

@@ -3,6 +3,7 @@ const PROTOCOL = 2;
 // A state comes 30 times a second, also while the world is paused. Silence is counted, not read off the clock: a page that was held
 // up itself has missed beats too, and has not read yet what came meanwhile.
 const BEAT_MS = 100, SILENT_BEATS = 6;
+const GIVEN_UP_BEATS = 100;   // as long as the server waits. The system may hold on to a connection that is gone for minutes
 const PING_MS = 500, MOST_PINGS = 100, RECENT_PINGS = 6, STEADY_PINGS = 3, RECENT_STATES = 128;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
@@ -15,12 +16,12 @@ export function address(path) {
 // `roundTrip_ms()`: from a word to its answer; null before the first. `steadyRoundTrip_ms()`: that of the link, without what a page that
 // was held up once added to an answer; 0 before some are known. `way_ms()`: from the server to here, without what waited for this
 // page; 0 before it is known. `here_ms(t)`: when the server's time t, in s, was on this page's clock; after the first state.
-// `newestAge_ms()`: of the newest message, since it left the server.
+// `newestAge_ms()`: of the newest message, since it left the server. `refusal`: why the server takes no connection, in words, or null.
 export function connect(listeners) {
-  const link = { dropped: 0, received_ms: null, open: false, send, isHeard, roundTrip_ms, steadyRoundTrip_ms, way_ms, here_ms, newestAge_ms };
+  const link = { dropped: 0, received_ms: null, open: false, refusal: null, send, isHeard, roundTrip_ms, steadyRoundTrip_ms, way_ms, here_ms, newestAge_ms };
   let socket = null, answered_ms = null, unanswered = [], recent_ms = [];   // pings: how long the newest answered one took; when the others were sent
   let apart_ms = [];   // of the last states: from the server's clock when sent to this page's when read
-  let number = null, server = null, beats = 0;
+  let number = null, server = null, beats = 0, waited_beats = 0;   // since the last message; since the last or a try to connect
 
   function send(message) {
     if (link.open) socket.send(JSON.stringify(message));
@@ -59,7 +60,8 @@ export function connect(listeners) {
   function take(event) {
     const message = JSON.parse(event.data);
     link.received_ms = performance.now();
-    beats = 0;
+    beats = waited_beats = 0;
+    link.refusal = null;
     if (message.type === "hello") {
       if (message.protocol !== PROTOCOL || (server !== null && message.server !== server)) {
         location.reload();   // another server than before: it may be newer than this page, and have another world
@@ -84,18 +86,39 @@ export function connect(listeners) {
     number = null;
     unanswered = [];
     apart_ms = [];
+    waited_beats = 0;
     socket = new WebSocket(address(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`));
     socket.onopen = () => { link.open = true; listeners.open(); };
     socket.onmessage = take;
-    socket.onclose = () => {
-      link.open = false;
-      listeners.closed();
-      setTimeout(open, 1000);
-    };
+    socket.onclose = closed;
+  }
+  function closed() {
+    if (!link.open) askWhy();
+    link.open = false;
+    waited_beats = 0;
+    listeners.closed();
+    setTimeout(open, 1000);
+  }
+  // A browser does not tell why a WebSocket was refused. A server that was started again may have another token.
+  async function askWhy() {
+    try {
+      const answer = await fetch(address("/worlds"));
+      link.refusal = answer.status === 401 ? `The server refuses this page: ${(await answer.text()).trim()}` : null;
+    } catch {
+      link.refusal = null;   // nobody is there
+    }
+  }
+  function giveUp() {
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close();
+    closed();
   }
 
   open();
-  setInterval(() => { ++beats; }, BEAT_MS);
+  setInterval(() => {
+    ++beats;
+    if (++waited_beats >= GIVEN_UP_BEATS) giveUp();
+  }, BEAT_MS);
   setInterval(() => {
     if (!link.open) return;
     const t = performance.now();

@@ -52,10 +52,14 @@ export function watchHands(active, changed) {
       event.preventDefault();   // arrows scroll
       leaveControl();
     }
-    if (!event.repeat) hold(name, true);
+    if (event.repeat) return;
+    // Shift may be down since before the hands were let go of, and says nothing anew.
+    if (name !== "slowly" && event.shiftKey !== hands.held.has("slowly")) hold("slowly", event.shiftKey);
+    hold(name, true);
   });
   addEventListener("keyup", (event) => {
-    if (KEYS[event.code]) hold(KEYS[event.code], false);
+    const name = KEYS[event.code];
+    if (name) hold(name, name === "slowly" && event.shiftKey);   // of two Shifts the other one
   });
   watchFocus(letGo);
   addEventListener("blur", letGo);
@@ -81,7 +85,11 @@ export function watchHands(active, changed) {
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
       button.addEventListener(end, () => hold(name, false));
     }
-    button.addEventListener("keydown", (event) => { if (event.key === "Enter" && active()) { event.preventDefault(); hold(name, true); } });
+    button.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" || !active()) return;
+      event.preventDefault();
+      if (!event.repeat) hold(name, true);
+    });
     button.addEventListener("keyup", (event) => { if (event.key === "Enter") hold(name, false); });
     button.addEventListener("blur", () => hold(name, false));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -112,9 +120,9 @@ export function watchHands(active, changed) {
     const dead = (v) => (Math.abs(v) < 0.12 ? 0 : v);
     setStick(dead(x / length), dead(y / length));
   }
-  // By other means than the pointer, which goes before.
+  // By other means than the pointer, which goes before. To rest it comes whatever drives.
   function steer(x, y) {
-    if (pointer === null && active()) setStick(x, y);
+    if (pointer === null && (active() || (x === 0 && y === 0))) setStick(x, y);
   }
   stick.addEventListener("pointerdown", (event) => {
     if (!active()) return;

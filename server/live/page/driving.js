@@ -17,9 +17,9 @@ export function createDriving(world, link) {
   let lost = "";        // name of the robot that was yours when the link was lost
   let wasMine = false;
   let kept = 0;         // the robot that a reload finds again
-  // Of past.js: whether one looks back, and how to stop that. Of the 3D view: whether keys point there, and whether a place
-  // is pointed at before a robot is placed.
-  const driving = { chosen: 0, update, placed, refused, closed, holding, place, choose, lookingBack: () => false, live() {},
+  // Of past.js: whether one looks back, and how to stop that. Of link_health.js: words for the person. Of the 3D view: whether keys point
+  // there, and whether a place is pointed at before a robot is placed.
+  const driving = { chosen: 0, update, placed, refused, closed, holding, place, choose, lookingBack: () => false, live() {}, say() {},
                     isPointing: () => false, beforePlacing: () => false };
   const hands = watchHands(() => holding() !== null && !dialogIsOpen() && !driving.lookingBack() && !driving.isPointing(), speak);
   driving.held = hands.held;
@@ -51,7 +51,7 @@ export function createDriving(world, link) {
   }, REPEAT_MS);
 
   function take() {
-    if (!chosen()) return;
+    if (!chosen() || placing) return;
     leaving = 0;
     driving.live();
     link.send({ type: "take", robot: driving.chosen });
@@ -71,15 +71,17 @@ export function createDriving(world, link) {
     if (placing || !link.open) return;
     placing = true;
     driving.live();
-    letGo();
+    hands.letGo();
     link.send({ type: "place", ...where });
   }
   function remove() {
     const robot = driving.chosen, about = chosen()?.about;
     if (about) driving.ask(`Remove ${about.name} from the world? This cannot be undone.`, "Remove", () => leave("remove", robot));
   }
+  // Not before: a place that is refused costs nobody his robot.
   function placed(robot) {
     placing = false;
+    letGo();
     coming = robot;
     update();
   }
@@ -100,7 +102,8 @@ export function createDriving(world, link) {
       if (mine) lost = "";
     }
     const moves = mine !== null && isMoving(message(mine));
-    const { state, text } = describe({ robot, mine, holder, lost, world, isHeard: link.isHeard(), moves, lookingBack: driving.lookingBack() });
+    const { state, text } = describe({ robot, mine, holder, lost, world, isHeard: link.isHeard(), moves, lookingBack: driving.lookingBack(),
+                                      pointing: driving.isPointing() });
     const line = by("drive-state");
     if (line.textContent !== text) line.textContent = text;
     line.dataset.state = state;
@@ -129,11 +132,16 @@ export function createDriving(world, link) {
     const select = by("robot");
     const wanted = [...world.robots.values()].map(({ about }) => `${about.id}`);
     if (wanted.join() !== [...select.options].map((option) => option.value).join()) {
-      select.replaceChildren(...[...world.robots.values()].map(({ about }) => new Option(about.name, about.id)));
+      const robots = [...world.robots.values()].map(({ about }) => about), isAlone = ({ name }) => robots.filter((other) => other.name === name).length === 1;
+      select.replaceChildren(...robots.map((about) => new Option(isAlone(about) ? about.name : `${about.name} (${about.view})`, about.id)));
     }
     if (world.robots.has(coming)) {
       driving.chosen = coming;
       coming = 0;
+    }
+    if (!chosen() && driving.chosen) {   // what is still down drives no other one
+      if (held && link.isHeard()) driving.say(`${held} left the world`);
+      hands.letGo();
     }
     if (!chosen()) driving.chosen = keptRobot() ?? world.robots.keys().next().value ?? 0;
     if (chosen() && kept !== driving.chosen) keepHere("robot", { server: world.server, id: kept = driving.chosen });
@@ -143,7 +151,7 @@ export function createDriving(world, link) {
   }
 
   function choose(robot) {
-    if (robot === driving.chosen) return;
+    if (robot === driving.chosen || !world.robots.has(robot)) return;
     letGo();
     coming = 0;
     driving.chosen = robot;

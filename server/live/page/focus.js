@@ -7,6 +7,17 @@ export function dialogIsOpen() {
   return document.querySelector("dialog[open]") !== null;
 }
 
+// A click beside a dialog closes it; one that began in it, to mark words, does not.
+export function closeBeside(dialog) {
+  const isBeside = ({ target, clientX, clientY }) => {
+    const { left, right, top, bottom } = dialog.getBoundingClientRect();
+    return target === dialog && (clientX < left || clientX > right || clientY < top || clientY > bottom);
+  };
+  let began = false;
+  dialog.addEventListener("pointerdown", (event) => { began = isBeside(event); });
+  dialog.addEventListener("click", (event) => { if (began && isBeside(event)) dialog.close(); });
+}
+
 export function focusStick() {
   if (!dialogIsOpen()) document.getElementById("stick").focus({ preventScroll: true });
 }

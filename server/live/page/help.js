@@ -1,5 +1,5 @@
 // The list of keys, opened by "?" or its button.
-import { dialogIsOpen } from "./focus.js";
+import { closeBeside, dialogIsOpen } from "./focus.js";
 
 // `beforeOpening()`: as for a question.
 export function createHelp(beforeOpening) {
@@ -11,7 +11,7 @@ export function createHelp(beforeOpening) {
   }
   document.getElementById("help-open").addEventListener("click", open);
   document.getElementById("help-close").addEventListener("click", () => dialog.close());
-  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });   // beside it
+  closeBeside(dialog);
   addEventListener("keydown", (event) => {
     if (event.key !== "?" || event.ctrlKey || event.altKey || event.metaKey) return;
     if (dialog.open) dialog.close(); else open();

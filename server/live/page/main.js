@@ -45,16 +45,18 @@ const link = connect({
   placed(message) { driving.placed(message.robot); },
   refused(message) {
     driving.refused();
-    health.refused(message.reason);
+    // a word that was under way when its robot left, or was let go of: the line above the stick says so
+    if (message.request !== "drive") health.refused(message.reason);
   },
 });
 const driving = createDriving(world, link);
 const timeControls = createTimeControls(world, link, driving.ask);
 createHelp(driving.letGoOfKeys);
-const panels = createPanels({ world, driving, view: () => view, jpeg: (camera) => pictures.jpeg(camera), complain: (words) => health.refused(words) });
+const panels = createPanels({ world, driving, view: () => view, shot: (camera) => pictures.shot(camera), complain: (words) => health.refused(words) });
 const pictures = createPictures(world, link, chosen, panels.bigView);
 const cameraHand = createCameraHand(link, driving);
 const health = createLinkHealth(world, link, driving.holding, pictures.oldest_ms);
+driving.say = health.refused;
 createWorlds(world, driving.letGoOfKeys, health.refused);
 createGamepad(driving.hands, driving.changePace, health.refused);
 
@@ -67,7 +69,7 @@ function showCamerasInstead() {
   document.getElementById("view").replaceWith(document.getElementById("pictures"));
 }
 import("./view_3d.js").then(({ createView }) => {
-  view = createView(world, panels.seen, link, driving, panels.chosen, health.refused, showCamerasInstead);
+  view = createView(world, panels.seen, link, driving, panels.chosen, health.refused, panels.bigView, showCamerasInstead);
   view.syncObjects();
   return view.shown;
 }).catch((error) => {

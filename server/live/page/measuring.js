@@ -1,5 +1,6 @@
 // The distance between two places that one points at: in all, horizontal, vertical, and the slope.
 import * as THREE from "/three/build/three.module.js";
+import { createAnnouncer } from "./announcer.js";
 import { keyIsTaken } from "./dead_man.js";
 import { fixed } from "./numbers.js";
 import { colour } from "./scene.js";
@@ -18,6 +19,7 @@ export function inWords({ distance_m, horizontal_m, vertical_m, slope_deg }) {
 }
 
 export function createMeasuring(stage, pointing, letGoOfKeys, words) {
+  const announce = createAnnouncer();
   const parent = new THREE.Group();
   const line = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ depthTest: false }));
   const marks = [0, 1].map(() => new THREE.Mesh(new THREE.OctahedronBufferGeometry(MARK_M), new THREE.MeshBasicMaterial({ depthTest: false })));
@@ -42,7 +44,7 @@ export function createMeasuring(stage, pointing, letGoOfKeys, words) {
       line.geometry = new THREE.BufferGeometry().setFromPoints(ends);
     }
     for (const object of [line, ...marks]) object.material.color.copy(colour("--force-body"));
-    words.textContent = line.visible ? inWords(measure(ends[0].toArray(), ends[1].toArray()))
+    words.textContent = line.visible ? inWords(measure(ends[0].toArray(), ends[1].toArray())) + (done ? ". Esc ends." : "")
       : from ? "Click the second place." : "Click the first of two places; or arrows and Enter. Esc ends.";
     stage.redraw();
   }
@@ -60,6 +62,8 @@ export function createMeasuring(stage, pointing, letGoOfKeys, words) {
         done = false;
       }
       show(p);
+      announce("");   // said again, though only its figures differ
+      announce(words.textContent);
     },
     ended() {
       parent.visible = false;
@@ -74,6 +78,7 @@ export function createMeasuring(stage, pointing, letGoOfKeys, words) {
     from = to = null;
     done = false;
     pointing.begin(task);   // ends the one before, which hides its words
+    announce(words.textContent);
     parent.visible = true;
     words.hidden = false;
     by("measure").setAttribute("aria-pressed", "true");

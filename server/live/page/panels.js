@@ -11,15 +11,14 @@ import { createTimeLine } from "./time_line.js";
 import { createTimeWindow } from "./time_window.js";
 
 async function pngOf(jpeg) {
-  if (!jpeg) throw new Error("the camera has sent none yet");
   const image = await createImageBitmap(jpeg), canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [image.width, image.height];
   penOf(canvas).drawImage(image, 0, 0);
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// `view()`: of the world in 3D, or null. `jpeg(camera)`: a promise of its newest picture (pictures.js). `complain` is called with what is wrong, in words.
-export function createPanels({ world, driving, view, jpeg, complain }) {
+// `view()`: of the world in 3D, or null. `shot(camera)`: a promise of its newest picture (pictures.js). `complain` is called with what is wrong, in words.
+export function createPanels({ world, driving, view, shot, complain }) {
   const history = createHistory(), chosen = () => driving.chosen;
   let bodies = "";
 
@@ -36,9 +35,13 @@ export function createPanels({ world, driving, view, jpeg, complain }) {
   }
   async function picture() {
     const figure = bigView.large();
-    if (figure) return { name: figure.dataset.camera, blob: await pngOf(await jpeg(figure.dataset.camera)) };
+    if (figure) {
+      const taken = await shot(figure.dataset.camera);
+      if (!taken) throw new Error("the camera has sent none yet");
+      return { name: figure.dataset.camera, blob: await pngOf(taken.jpeg), t: taken.time_s };
+    }
     if (!view()) throw new Error("the world is not drawn here");
-    return { name: "3D", blob: await view().picture() };
+    return { name: "3D", blob: await view().picture(), t: past.shown_s() };
   }
 
   const past = createPast(world, history, {
@@ -63,7 +66,9 @@ export function createPanels({ world, driving, view, jpeg, complain }) {
     interrupt: history.interrupt,
     bigView,
     update() {
-      past.update(history.take(world));
+      const anew = history.take(world);
+      if (anew) driving.letGoOfKeys();   // a reset: where keys drove to, the robot is no more
+      past.update(anew);
       show();
     },
   };

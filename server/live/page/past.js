@@ -1,16 +1,18 @@
 // Looking back: what the page shows of the world is that of an earlier moment, while the world goes on. Nobody drives by what was, so hands
 // are let go of at its beginning, and nothing that is pressed meanwhile drives.
+import { createAnnouncer } from "./announcer.js";
 import { fixed } from "./numbers.js";
 
 // How long ago, for people.
 export function ago(seconds) {
-  return seconds < 60 ? `${fixed(seconds, 1)} s ago` : `${Math.floor(seconds / 60)} min ${fixed(seconds % 60, 0)} s ago`;
+  const whole = Math.round(seconds);
+  return seconds < 59.95 ? `${fixed(seconds, 1)} s ago` : `${Math.floor(whole / 60)} min ${whole % 60} s ago`;
 }
 
 // `begin()`: before the first look back. `show()`: after what is seen has changed, but for the world's own changes. `mine()`: the robot that is yours, or null.
 // `seen`: the world as it is shown, in all that changes with time: now, or as it was.
 export function createPast(world, history, { begin, show, mine }) {
-  const banner = document.getElementById("past-banner");
+  const banner = document.getElementById("past-banner"), announce = createAnnouncer();
   let at_s = null;   // null: live
   // what is not set here is the world's
   const seen = Object.create(world);
@@ -18,11 +20,12 @@ export function createPast(world, history, { begin, show, mine }) {
   function sayWhen() {
     banner.hidden = at_s === null;
     document.body.toggleAttribute("data-past", at_s !== null);
-    if (at_s === null) return;
+    if (at_s === null) return announce("");
     const robot = mine();
     const words = `Looking back: ${ago(history.last_s() - at_s)}, at ${fixed(at_s, 2)} s. The world ${world.paused ? "is paused" : "goes on"}. ` +
       `Nothing drives${robot ? `; Space stands ${robot.about.name}` : ""}. Esc or \u201cLive\u201d returns.`;
     if (banner.textContent !== words) banner.textContent = words;
+    announce(words);
   }
 
   function setSeen() {

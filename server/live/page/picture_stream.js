@@ -13,11 +13,11 @@ function head(bytes, from) {
     return null;
   }
   const value = (name) => Number(new RegExp(`^${name}: *([0-9.]+)`, "im").exec(words.slice(0, end))?.[1]);
-  return { at: from + end + 4, length: value("Content-Length"), number: value("X-Frame-Number"), age_ms: value("X-Age-Ms") };
+  return { at: from + end + 4, length: value("Content-Length"), number: value("X-Frame-Number"), time_s: value("X-Robot-Time"), age_ms: value("X-Age-Ms") };
 }
 
-// Reads until the stream ends, which throws; `take({ jpeg, number, age_ms })` gets the newest whole part each time some came: age_ms is
-// that at the server when it was sent.
+// Reads until the stream ends, which throws; `take({ jpeg, number, time_s, age_ms })` gets the newest whole part each time some came:
+// time_s is the robot time that it shows, age_ms its age when the server sent it.
 export async function readPictures(path, signal, take) {
   const answer = await fetch(address(path), { signal });
   if (!answer.ok) throw new Error(await answer.text());
@@ -32,7 +32,7 @@ export async function readPictures(path, signal, take) {
     bytes = joined;
     let newest = null;
     for (let part = head(bytes, 0); part && part.at + part.length <= bytes.length; part = head(bytes, 0)) {
-      newest = { jpeg: bytes.slice(part.at, part.at + part.length), number: part.number, age_ms: part.age_ms };
+      newest = { jpeg: bytes.slice(part.at, part.at + part.length), number: part.number, time_s: part.time_s, age_ms: part.age_ms };
       bytes = bytes.slice(part.at + part.length);
     }
     if (newest) take(newest);

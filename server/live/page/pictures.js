@@ -4,14 +4,16 @@ import { readPictures } from "./picture_stream.js";
 
 const MOST = 4;            // a browser has six connections to one server
 const AGAIN_MS = 1000;     // after a stream broke
+const LOOK_MS = 200;
 const OLD_MS = 500;        // while time runs: something is too slow
 const KEPT = 200;          // frames whose time is known
+const HALF_UP_TO = 0.55;   // of the width
 const RIGHT_SIZE_MS = 2000;   // so long a picture of the size that its place has by now is waited for
 
 // `bigView`: of big_view.js, which may have one of the pictures.
 export function createPictures(world, link, chosen, bigView) {
   const section = document.getElementById("pictures");
-  let started = false, shown = "", figures = [];
+  let started = false, shown = "", figures = [], density = devicePixelRatio;
 
   // When the server's camera saw each frame, by the server's clock, as the states say.
   function note(figure, camera) {
@@ -32,8 +34,8 @@ export function createPictures(world, link, chosen, bigView) {
     const { picture } = figure, before = picture.src;
     picture.src = url;
     if (before) URL.revokeObjectURL(before);
-    figure.shown = { number: part.number, stamped_ms: performance.now() - part.age_ms, size };
-    figure.came?.();
+    figure.shown = { number: part.number, time_s: part.time_s, stamped_ms: performance.now() - part.age_ms, size };
+    for (const wake of figure.waiting.splice(0)) wake();
   }
 
   // Until the figure is gone; each stream until its size is no longer the right one.
@@ -47,16 +49,20 @@ export function createPictures(world, link, chosen, bigView) {
       }
     }
   }
-  // The picture keeps its shape in the place that it has.
-  const sizeFor = ({ picture: { clientWidth, clientHeight }, width, height }) =>
-    Math.min(clientWidth, clientHeight * width / height) * devicePixelRatio <= width / 2 ? "half" : "full";
+  // The picture keeps its shape in the place that it has. What is drawn in half its size may be stretched a little, so that no place is at
+  // the limit.
+  function sizeFor({ picture: { clientWidth, clientHeight }, width, height, size }) {
+    const most = (size === "half" ? HALF_UP_TO : 0.5) * width;
+    return Math.min(clientWidth, clientHeight * width / height) * devicePixelRatio <= most ? "half" : "full";
+  }
+  function fit(figure) {
+    const size = sizeFor(figure);
+    if (figure.size === size) return;
+    figure.size = size;
+    if (figure.stream) figure.stream.abort(); else read(figure);
+  }
   const places = new ResizeObserver((entries) => {
-    for (const { target } of entries) {
-      const figure = figures.find(({ picture }) => picture === target), size = figure && sizeFor(figure);
-      if (!figure || figure.size === size) continue;
-      figure.size = size;
-      if (figure.stream) figure.stream.abort(); else read(figure);
-    }
+    for (const { target } of entries) figures.filter(({ picture }) => picture === target).forEach(fit);
   });
 
   function clear(words) {
@@ -96,7 +102,7 @@ export function createPictures(world, link, chosen, bigView) {
       section.append(frame);
       const { width, height } = camera;
       places.observe(picture);
-      return { camera: camera.name, width, height, picture, jpeg: null, age, size: null, stream: null, gone: false, seen_s: new Map(), shown: null };
+      return { camera: camera.name, width, height, picture, jpeg: null, age, size: null, stream: null, gone: false, waiting: [], seen_s: new Map(), shown: null };
     });
     bigView.built([...section.children]);
   }
@@ -115,6 +121,10 @@ export function createPictures(world, link, chosen, bigView) {
       shown = wanted;
       if (wanted) build(robot.about); else clear(words);
     }
+    if (density !== devicePixelRatio) {   // on another screen, which changes no place
+      density = devicePixelRatio;
+      figures.filter(({ size }) => size).forEach(fit);
+    }
     figures.forEach((figure, i) => {
       note(figure, robot.now?.cameras?.[i]);
       if (!figure.shown) return;
@@ -125,16 +135,18 @@ export function createPictures(world, link, chosen, bigView) {
   }
 
   document.addEventListener("visibilitychange", update);
+  setInterval(update, LOOK_MS);   // ages grow without a word from the server, too
   update();
   return {
     update,
-    // The newest picture of that camera, a Blob; null: it has sent none yet. Of one that has just been enlarged, the first whole one.
-    async jpeg(camera) {
+    // The newest picture of that camera: { jpeg, a Blob; time_s, of the robot }; null: it has sent none yet. Of one that has just been
+    // enlarged, the first whole one.
+    async shot(camera) {
       const figure = figures.find((each) => each.camera === camera), until_ms = performance.now() + RIGHT_SIZE_MS;
       while (figure?.shown && figure.shown.size !== sizeFor(figure) && performance.now() < until_ms) {
-        await new Promise((again) => { figure.came = again; setTimeout(again, RIGHT_SIZE_MS); });
+        await new Promise((again) => { figure.waiting.push(again); setTimeout(again, RIGHT_SIZE_MS); });
       }
-      return figure?.jpeg ?? null;
+      return figure?.shown ? { jpeg: figure.jpeg, time_s: figure.shown.time_s } : null;
     },
     oldest_ms: () => Math.max(0, ...ages_ms()),
     start() {

@@ -1,5 +1,6 @@
 // Placing a robot where one points: its ghost follows the pointer, a click or Enter places it, Esc does not.
 import * as THREE from "/three/build/three.module.js";
+import { createAnnouncer } from "./announcer.js";
 import { makeRobot } from "./robot_model.js";
 import { dispose } from "./stage.js";
 
@@ -20,6 +21,7 @@ function makeGhost(about) {
 
 // `words`: the element for what to do.
 export function createPlacing(stage, world, pointing, driving, words) {
+  const announce = createAnnouncer();
   let ghost = null, yaw = 0, place = null;
 
   function show() {
@@ -67,6 +69,7 @@ export function createPlacing(stage, world, pointing, driving, words) {
       return true;
     }
     driving.letGoOfKeys();
+    driving.live();
     pointing.begin(task);
     yaw = 0;
     if (world.placeable) {
@@ -76,6 +79,8 @@ export function createPlacing(stage, world, pointing, driving, words) {
     show();
     words.textContent = "Click where it is to stand, or arrows and Enter; comma, full stop: turn. Enter alone: at a free start. Esc: cancel.";
     words.hidden = false;
+    announce("");
+    announce(words.textContent);
     document.getElementById("place").setAttribute("aria-pressed", "true");
     return true;
   };

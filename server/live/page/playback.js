@@ -21,9 +21,15 @@ const curves = createCurves(lanes.xOf, zoom);
 const readings = createReadings();
 const channels = createChannels(drawCurves);
 
+let noView = "";   // why there is no 3D view; stays until another complaint is more urgent
 function complain(text) {
-  by("notice").textContent = text;
-  by("notice").hidden = !text;
+  by("notice").textContent = text || noView;
+  by("notice").hidden = !by("notice").textContent;
+}
+function loseView(why) {
+  view = null;
+  noView = `No 3D view: ${why}`;
+  complain("");
 }
 
 function update() {
@@ -128,7 +134,14 @@ async function load(next) {
   by("world").textContent = about.world;
   complain(`${about.file} is being simulated`);
   const loaded = await fetchRun(next, () => number === next).catch((error) => { complain(error.message); return null; });
-  if (!loaded || number !== next) return;
+  if (number !== next) return;
+  if (!loaded) {   // what is shown is still the run before
+    if (!run) return;
+    number = list.runs.findIndex(({ file }) => file === run.file);
+    by("run").value = `${number}`;
+    by("world").textContent = list.runs[number].world;
+    return;
+  }
   complain("");
   run = loaded;
   makeLegend();
@@ -171,7 +184,7 @@ addEventListener("keydown", (event) => {
   const act = KEYS[event.code] ?? TYPED[event.key.toLowerCase()];
   if (!run || !act || !(event.target instanceof Element) || keyIsTaken(event)) return;
   event.preventDefault();
-  act();
+  if (event.code !== "Space" || !event.repeat) act();
 });
 for (const [id, act] of [["play", KEYS.Space], ["step-back", KEYS.ArrowLeft], ["step-on", KEYS.ArrowRight], ["to-start", KEYS.Home], ["to-end", KEYS.End],
   ["zoom-in", TYPED["+"]], ["zoom-out", TYPED["-"]], ["zoom-all", TYPED[0]], ["worst", toWorst], ["save", takePicture]]) {
@@ -200,9 +213,9 @@ fetchList().then(async (answer) => {
   // curves and figures work without it, where a browser has no WebGL
   const loading = load(list.first);
   await import("./playback_view.js").then(({ createPlaybackView }) => {
-    view = createPlaybackView(list, shown, complain);
+    view = createPlaybackView(list, shown, complain, () => loseView("the browser has taken it away"));
     exaggerate();
     if (run) view.load(run, `/playback/${number}/scene`).then(update);
-  }).catch((error) => complain(`No 3D view: ${error.message}`));
+  }).catch((error) => loseView(error.message));
   await loading;
 }).catch((error) => complain(error.message));

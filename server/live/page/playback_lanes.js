@@ -1,4 +1,6 @@
 // The time line: its ruler, the phases, the marks of the report, and the cursor that is dragged over all of them.
+import { onDrag } from "./drag.js";
+
 const LEFT_PX = 58, RIGHT_PX = 12, NARROW_PX = 26;
 const MOST_SHADE = 0.62;   // as in the report: text on it keeps a contrast of 4.5 : 1
 
@@ -18,7 +20,7 @@ const shade = (strength) => `color-mix(in srgb, var(--shade) ${(100 * MOST_SHADE
 // `hovered(t)`: the pointer is at that time; null: nowhere.
 export function createLanes(clock, zoom, drawn, hovered) {
   const lanes = by("lanes"), ruler = by("ruler"), cursor = by("cursor"), hover = by("hover"), about = by("about-mark");
-  let run = null, report = null, spans = [], dragging = false;
+  let run = null, report = null, spans = [];
 
   const usual = () => (run?.marks.length ? `Darker: in the report, a larger part of the gap${report?.stage ? ` from ${report.stage}` : ""} between the robot and its nominal simulation.` : "");
   const end = () => run.t_s[run.t_s.length - 1] || 1;
@@ -125,20 +127,17 @@ export function createLanes(clock, zoom, drawn, hovered) {
     }
     hovered(t);
   }
-  lanes.addEventListener("pointerdown", (event) => {
-    if (!run || event.button !== 0) return;
-    dragging = true;
-    lanes.setPointerCapture(event.pointerId);
-    pointAt(null);
-    clock.set(timeOf(event));
-  });
-  lanes.addEventListener("pointermove", (event) => {
-    if (!run) return;
-    if (dragging) clock.set(timeOf(event));
-    else if (event.pointerType === "mouse") pointAt(timeOf(event));
+  onDrag(lanes, {
+    looks(event) {
+      if (!run) return;
+      pointAt(null);
+      clock.set(timeOf(event));
+    },
+    moved(event, isDragged) {
+      if (run && event.pointerType === "mouse" && !isDragged) pointAt(timeOf(event));
+    },
   });
   lanes.addEventListener("pointerleave", () => { if (run) pointAt(null); });
-  for (const name of ["pointerup", "pointercancel"]) lanes.addEventListener(name, () => { dragging = false; });
   // with Control, as maps do: alone the wheel scrolls the curves
   lanes.addEventListener("wheel", (event) => {
     if (!run) return;

@@ -58,9 +58,9 @@ function makeRibbon(run, body, hue, lower_m, factor) {
   return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: hue, side: THREE.DoubleSide }));
 }
 
-// `shown(kind)`: whether that body is to be seen; "paths": the strips.
-export function createPlaybackView(list, shown, complain) {
-  const stage = createStage({ complain, dressed: rebuild, eye: EYE, sharpens: true });
+// `shown(kind)`: whether that body is to be seen; "paths": the strips. `gone()`: as of a stage.
+export function createPlaybackView(list, shown, complain, gone) {
+  const stage = createStage({ complain, gone, dressed: rebuild, eye: EYE, sharpens: true });
   let run = null, bodies = [], t = 0, factor = 1;
   const ribbonOf = ({ body, hue, lower_m }) => makeRibbon(run, body, hue, lower_m, factor);
 

@@ -121,13 +121,15 @@ export function createPlot(key, removed) {
           pen.lineWidth = 1.5;
           drawLine(pen, rows, i + 1, x, y);
         });
+        if (cursor_s !== null) {
+          pen.strokeStyle = colour("--ink");
+          pen.lineWidth = 1;
+          pen.beginPath();
+          pen.moveTo(x(cursor_s), 0);
+          pen.lineTo(x(cursor_s), height);
+          pen.stroke();
+        }
         pen.restore();
-        if (cursor_s === null) return;
-        pen.strokeStyle = colour("--ink");
-        pen.beginPath();
-        pen.moveTo(x(cursor_s), 0);
-        pen.lineTo(x(cursor_s), height);
-        pen.stroke();
       });
     },
   };

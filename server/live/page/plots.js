@@ -1,5 +1,6 @@
 // The plots that a person chose, one under the other with one time axis. A press on them looks back to that time.
 import { keep, recall } from "./kept.js";
+import { onDrag } from "./drag.js";
 import { createPlot, paint, timeAt, xOf } from "./plot.js";
 import { SIGNALS, USUAL } from "./signals.js";
 
@@ -9,7 +10,8 @@ const by = (id) => document.getElementById(id);
 // `chosen()`: the robot's id. `changed(keys)`: which signals have a plot.
 export function createPlots(history, past, timeWindow, chosen, changed) {
   const list = by("plots"), axis = by("time-axis"), kept = recall("plots");
-  let plots = [], hover_s = null, drawn_ms = -Infinity;
+  let plots = [], hover = null, drawn_ms = -Infinity;   // hover: the canvas and the place in the window that the pointer is at
+  const timeOf = ({ canvas, clientX }) => timeAt(clientX - canvas.getBoundingClientRect().x, timeWindow.range(), canvas.clientWidth);
 
   function store() {
     const keys = plots.map(({ key }) => key);
@@ -25,18 +27,9 @@ export function createPlots(history, past, timeWindow, chosen, changed) {
   }
   function add(key) {
     const plot = createPlot(key, () => remove(key)), { canvas } = plot;
-    const at = (event) => timeAt(event.clientX - canvas.getBoundingClientRect().x, timeWindow.range(), canvas.clientWidth);
-    canvas.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0) return;
-      canvas.setPointerCapture(event.pointerId);
-      past.lookAt(at(event));
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      hover_s = at(event);
-      if (canvas.hasPointerCapture(event.pointerId)) past.lookAt(hover_s);
-      draw();
-    });
-    canvas.addEventListener("pointerleave", () => { hover_s = null; draw(); });
+    const at = ({ clientX }) => timeOf({ canvas, clientX });
+    onDrag(canvas, { looks: (event) => past.lookAt(at(event)), moved({ clientX }) { hover = { canvas, clientX }; draw(); } });
+    canvas.addEventListener("pointerleave", () => { hover = null; draw(); });
     plots.push(plot);
     list.append(plot.root);
   }
@@ -58,7 +51,7 @@ export function createPlots(history, past, timeWindow, chosen, changed) {
   function draw() {
     drawn_ms = performance.now();
     const range = timeWindow.range(), moments = history.between(range.from_s - timeWindow.span_s() / 100, range.to_s);
-    const cursor_s = hover_s ?? (past.isBack() ? past.shown_s() : null);
+    const hover_s = hover && timeOf(hover), cursor_s = hover_s ?? (past.isBack() ? past.shown_s() : null);
     for (const plot of plots) plot.draw(moments, chosen(), range, cursor_s, hover_s ?? past.shown_s());
     drawAxis(range);
   }

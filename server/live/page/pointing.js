@@ -6,9 +6,10 @@ const CLICK_PX = 5;
 const STEP_M = 0.1, FINE_M = 0.01;
 const ARROWS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };   // ahead, to the left, on the screen
 
-// `surfaces()`: what can be pointed at beside what never moves; `clicked(x, y)`: a click while there is no task.
+// `surfaces()`: what can be pointed at beside what never moves; `clicked(x, y)`: a click while there is no task; `begins()`: before a task;
+// `changed()`: one has begun or ended.
 // A task: { name, moved(p or null), taken(p or null), ended(), key(code): whether it is its own }; places are THREE.Vector3 in W.
-export function createPointing(stage, surfaces, clicked) {
+export function createPointing(stage, surfaces, { clicked, begins, changed }) {
   const { canvas } = stage;
   let task = null, at = null, pressed = null;   // `pressed`: a pointer that may become a click
 
@@ -23,6 +24,7 @@ export function createPointing(stage, surfaces, clicked) {
     task = at = null;
     canvas.classList.remove("pointing");
     ended.ended();
+    changed();
     stage.redraw();
   }
   const under = (event) => stage.pick(event.clientX, event.clientY, surfaces())?.point ?? null;
@@ -76,10 +78,12 @@ export function createPointing(stage, surfaces, clicked) {
     // Ends the one before it. Nothing is pointed at before the pointer or a key has moved.
     begin(next) {
       end();
+      begins();
       task = next;
       at = null;
       canvas.classList.add("pointing");
       task.moved(null);
+      changed();
     },
     end,
     isOn: (name = null) => task !== null && (name === null || task.name === name),

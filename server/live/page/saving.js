@@ -11,7 +11,7 @@ function download(name, blob) {
   setTimeout(() => URL.revokeObjectURL(link.href), KEPT_MS);
 }
 
-// `picture()`: {name, blob} of what is large, by a promise; `complain` is called with what is wrong, in words.
+// `picture()`: {name, blob, t} of what is large, and the robot time that it shows, by a promise; `complain` is called with what is wrong, in words.
 export function createSaving(history, past, timeWindow, chosen, picture, complain) {
   const when = (t) => `${t.toFixed(2)}s`;
   document.getElementById("save-run").addEventListener("click", () => {
@@ -23,8 +23,8 @@ export function createSaving(history, past, timeWindow, chosen, picture, complai
   });
   document.getElementById("save-picture").addEventListener("click", async () => {
     try {
-      const { name, blob } = await picture();
-      download(fileName([past.seen.name, name, when(past.shown_s())], ".png"), blob);
+      const { name, blob, t } = await picture();
+      download(fileName([past.seen.name, name, when(t)], ".png"), blob);
     } catch (error) {
       complain(`No picture to save: ${error.message}`);
     }

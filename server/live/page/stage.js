@@ -31,6 +31,11 @@ export function createStage({ complain, gone = () => {}, dressed = () => {}, eye
   const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
   camera.up.set(0, 0, 1);
   camera.position.set(...eye);
+  // These controls take all fingers on the screen for theirs, and never hear that the browser has taken one away.
+  for (const name of ["touchstart", "touchmove", "touchend"]) {
+    canvas.addEventListener(name, (event) => Object.defineProperty(event, "touches", { value: event.targetTouches }), { capture: true });
+  }
+  canvas.addEventListener("touchcancel", () => canvas.dispatchEvent(new Event("touchend")));
   const controls = new OrbitControls(camera, canvas);
   controls.enableKeys = false;   // the keys drive, or play
   controls.maxPolarAngle = 0.495 * Math.PI;

@@ -1,6 +1,7 @@
 // Pause, step, speed, reset.
 import { keyIsTaken } from "./dead_man.js";
 
+const CHOOSES_MS = 3000;   // an open list is closed after a choice, or given up
 const by = (id) => document.getElementById(id);
 
 // `ask`: of question.js.
@@ -8,6 +9,8 @@ export function createTimeControls(world, link, ask) {
   const pause = () => link.send({ type: "pause", on: !world.paused });
   by("pause").addEventListener("click", pause);
   by("step").addEventListener("click", () => link.send({ type: "step", time: 0.1 }));
+  let touched_ms = -Infinity;   // the list of speeds, which then keeps what a person is about to choose
+  for (const name of ["keydown", "pointerdown", "change"]) by("speed").addEventListener(name, () => { touched_ms = performance.now(); });
   by("speed").addEventListener("change", (event) => link.send({ type: "speed", value: Number(event.target.value) }));
   by("reset").addEventListener("click", () => {
     ask("Reset the whole world? All robots go back to their starts; programs that drive in it continue.", "Reset", () => link.send({ type: "reset" }));
@@ -18,7 +21,7 @@ export function createTimeControls(world, link, ask) {
 
   function showSpeed() {
     const select = by("speed"), value = `${world.speed}`;
-    if (document.activeElement === select || select.value === value) return;
+    if ((document.activeElement === select && performance.now() < touched_ms + CHOOSES_MS) || select.value === value) return;
     if (![...select.options].some((option) => option.value === value)) select.add(new Option(`${value} \u00d7`, value));
     select.value = value;
   }

@@ -6,6 +6,7 @@ const STEP_S = 1, LONG_STEP_S = 10;
 const REPLAY_S = 10, FRAME_MS = 40;
 const LONGEST_FRAME_MS = 200;   // a page that was held up goes on from where it was, and skips nothing
 const STEPS = 1000;   // of the slider
+const NOTCH = 50, LINE_PX = 33;   // a mouse's wheel turns by 100 or three lines and more, a trackpad's by little, many times
 const by = (id) => document.getElementById(id);
 
 export function createTimeLine(history, past, timeWindow, changed) {
@@ -47,9 +48,14 @@ export function createTimeLine(history, past, timeWindow, changed) {
     if (slider.value === slider.max && to_s >= history.last_s()) live();
     else lookAt(Math.min(from_s + (to_s - from_s) * slider.value / STEPS, history.last_s() - 1e-9));
   });
+  let turned = 0;   // of the wheel, since the last zoom
   slider.addEventListener("wheel", (event) => {
+    if (!event.deltaY) return;
     event.preventDefault();
-    zoom(event.deltaY > 0 ? 1 : -1);
+    turned += event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
+    if (Math.abs(turned) < NOTCH) return;
+    zoom(Math.sign(turned));
+    turned = 0;
   });
   by("live").addEventListener("click", live);
   by("replay").addEventListener("click", toggleReplay);

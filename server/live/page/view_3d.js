@@ -16,11 +16,11 @@ const DECK = { fault: 0xb03a2e, mine: 0x1d6fb8, silent: 0x7a7f7b, usual: 0x2f7a6
 const MARK_OVER_M = 0.4;
 
 // `complain` is called with what is missing, in words; `gone()` when the browser has taken the picture away. `shown`: a promise, kept when the world is there or its want was complained of.
-// `seen`: the world as it is shown (past.js).
-export function createView(live, seen, link, driving, chosen, complain, gone) {
+// `seen`: the world as it is shown (past.js). `bigView`: of big_view.js.
+export function createView(live, seen, link, driving, chosen, complain, bigView, gone) {
   const robots = new Map();
   let boxes = [];
-  const stage = createStage({ complain, gone, dressed() { boxes = rebuildBoxes(); } });
+  const stage = createStage({ complain, gone() { pointing.end(); gone(); }, dressed() { boxes = rebuildBoxes(); } });
   const { scene } = stage;
   // Over the chosen robot, where there are several.
   const mark = new THREE.Mesh(new THREE.ConeBufferGeometry(0.04, 0.09, 12), new THREE.MeshLambertMaterial({ color: DECK.mine }));
@@ -31,14 +31,15 @@ export function createView(live, seen, link, driving, chosen, complain, gone) {
   const words = document.getElementById("pointing-words");
   const solids = () => boxes.map(({ object }) => object);
   const models = () => [...robots.values()].map(({ root }) => root);
-  const pointing = createPointing(stage, solids, selectAt);
+  const pointing = createPointing(stage, solids, { clicked: selectAt, begins: bigView.showWorld, changed: driving.update });
+  bigView.whenCamera = pointing.end;
   createPlacing(stage, live, pointing, driving, words);
   createMeasuring(stage, pointing, driving.letGoOfKeys, words);
   driving.isPointing = () => pointing.isOn();
 
   // A click on a robot chooses it; one that is made while driving is a slip.
   function selectAt(x, y) {
-    if (driving.held.size > 0) return;
+    if (driving.hands.areFull()) return;
     const found = stage.pick(x, y, [...solids(), ...models()]);
     for (let part = found?.object; part; part = part.parent) {
       const hit = [...robots].find(([, { root }]) => root === part);

@@ -1,12 +1,18 @@
+import { keepHere, recallHere } from "./kept.js";
+
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
+// `mine`: the numbers that this window has had at this server, a new one at each connection; `you`: the newest.
 export function createWorld() {
-  return { you: 0, server: 0, name: "", operatorSilence_s: 0.5, sent_s: 0, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
+  return { you: 0, mine: new Set(), server: 0, name: "", operatorSilence_s: 0.5, sent_s: 0, time_s: 0, paused: false, pausedBy: null, speed: 1, reached: 0, viewers: 0, pictures: false,
            robots: new Map(), boxes: [], placeable: null };
 }
 
 export function takeHello(world, message) {
   world.you = message.you;
   world.server = message.server;
+  const kept = recallHere("operator");
+  world.mine = new Set(kept?.server === message.server ? kept.numbers : []).add(message.you);
+  keepHere("operator", { server: message.server, numbers: [...world.mine] });
   world.name = message.world;
   world.pictures = message.pictures;
   world.operatorSilence_s = message.operator_silence;

@@ -1,6 +1,6 @@
 // Which worlds are installed, and how the server is started with another: a running one keeps its world (docs/live-view.md has why).
 import { address } from "./connection.js";
-import { dialogIsOpen } from "./focus.js";
+import { closeBeside, dialogIsOpen } from "./focus.js";
 
 const by = (id) => document.getElementById(id);
 
@@ -30,6 +30,7 @@ export function createWorlds(world, beforeOpening, complain) {
     installed.worlds.sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
     list.replaceChildren(...installed.worlds.map(({ name }) => new Option(name === world.name ? `${name} (running)` : name, name)));
     list.value = world.name;
+    by("worlds-copied").textContent = "";
     show();
     if (!dialogIsOpen()) dialog.showModal();
   }
@@ -37,7 +38,7 @@ export function createWorlds(world, beforeOpening, complain) {
   by("world").addEventListener("click", open);
   list.addEventListener("change", show);
   by("worlds-close").addEventListener("click", () => dialog.close());
-  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });   // beside it
+  closeBeside(dialog);
   // A page that came by the network without encryption has no clipboard: there one marks the words.
   by("worlds-copy").hidden = !navigator.clipboard;
   by("worlds-copy").addEventListener("click", () => navigator.clipboard.writeText(by("worlds-command").textContent)

@@ -159,6 +159,8 @@ void Browser::set_print(bool print) {
 
 void Browser::key(std::string_view code, bool down, std::string_view key) {
   json event{{"type", down ? "rawKeyDown" : "keyUp"}, {"code", code}, {"key", key.empty() ? code : key}};
+  if (code == "ShiftLeft" || code == "ShiftRight") shift_ = down;
+  if (shift_) event["modifiers"] = 8;
   if (code == "Enter" || code == "Space") {
     event["windowsVirtualKeyCode"] = code == "Enter" ? 13 : 32;
     event["key"] = code == "Enter" ? "Enter" : " ";

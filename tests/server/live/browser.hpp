@@ -35,7 +35,8 @@ class Browser {
   void resize(int width, int height, bool phone = false);
   void set_dark(bool dark);
   void set_print(bool print);  // as on paper, or on a screen
-  // `code`: a KeyboardEvent.code, "KeyW"; `key`: what it types, if that matters. Enter and Space do what they do.
+  // `code`: a KeyboardEvent.code, "KeyW"; `key`: what it types, if that matters. Enter, Space and Shift do what they
+  // do.
   void key(std::string_view code, bool down, std::string_view key = {});
   // "mousePressed", "mouseMoved" or "mouseReleased" of the left button, which is down meanwhile.
   // `clicks`: 2 for the second press of a double click.
@@ -58,6 +59,7 @@ class Browser {
   pid_t pid_ = -1;
   int to_ = -1, from_ = -1;
   int last_call_ = 0;
+  bool shift_ = false;
   std::string session_, received_;
   std::vector<std::string> complaints_;
 };

@@ -102,6 +102,12 @@ TEST_CASE("In a browser: with Shift the keys drive slowly") {
   const double fast = desk.robot_with(drives)["command"]["track"][0];
   desk.browser.key("ShiftLeft", true);
   desk.robot_with([&](const json& robot) { return robot["command"]["track"][0] == Approx(0.3 * fast).margin(1e-3); });
+  // Still slowly after Space, though Shift says nothing anew.
+  press(desk.browser, "Space");
+  desk.robot_with(stands);
+  desk.browser.key("KeyW", false);
+  desk.browser.key("KeyW", true);
+  desk.robot_with([&](const json& robot) { return robot["command"]["track"][0] == Approx(0.3 * fast).margin(1e-3); });
   desk.browser.key("ShiftLeft", false);
   desk.robot_with([&](const json& robot) { return robot["command"]["track"][0] == Approx(fast).margin(1e-3); });
   desk.browser.key("KeyW", false);

@@ -57,6 +57,11 @@ TEST_CASE("In a browser: a world that is paused says by whom, and never that it 
   CHECK(text_of(desk.browser, "drive-state") == "Manual1 is yours; the world is paused by you");
   desk.browser.wait_for("!(" + says("alarm", "Paused") + ")");
   desk.browser.key("KeyW", false);
+
+  // And still by oneself once the page is loaded anew, though the server counts another operator then.
+  desk.browser.evaluate("window.was_open = true, setTimeout(() => location.reload(), 50), 0");
+  desk.browser.wait_for(
+      "!window.was_open && document.getElementById('drive-state')?.textContent.endsWith('paused by you')");
   CHECK(desk.browser.complaints().empty());
 }
 
@@ -107,25 +112,27 @@ TEST_CASE("In a browser, 250 ms from its server: an alarm, and the true age of t
 }
 
 TEST_CASE("In a browser: a page that is held up again and again says why the robot stutters") {
-  Desk desk;
+  Desk desk({"--disable-3d-apis"});  // drawn without a graphics card, the world alone may hold a page up
   desk.place();
-  // By hand: pauses of 0.6 and 0.7 s count where 0.5 s does, one alone does not, nor what a hidden page sleeps.
+  // By hand: pauses of 0.6 and 0.7 s count where 0.5 s does, one alone does not, nor what was before a rest.
   CHECK(desk.browser.evaluate(R"(import("/page_pace.js").then(({ createPagePace }) => {
-    const pace = createPagePace(), seen = [];
-    for (const ms of [0, 200, 800, 1000]) pace.ticked(ms, 500);
-    seen.push(pace.heldUp_ms());
-    pace.unseen();
-    for (const ms of [3000, 3700]) pace.ticked(ms, 500);
-    seen.push(pace.heldUp_ms());
-    for (let ms = 3800; ms <= 6000; ms += 200) pace.ticked(ms, 500);
-    seen.push(pace.heldUp_ms());
+    const pace = createPagePace(), seen = [], tick = (...times_ms) => {
+      for (const ms of times_ms) pace.ticked(ms, 500);
+      seen.push(pace.heldUp_ms());
+    };
+    tick(0, 50, 650, 700);
+    tick(1400, 1450);
+    for (let ms = 1500; ms < 5700; ms += 50) pace.ticked(ms, 500);
+    tick(5700);
+    pace.rest();
+    tick(9000, 9600);
     return seen;
-  }))") == json({0, 700, 0}));
+  }))") == json({0, 700, 0, 0}));
 
   // Busy for 0.7 s of each 0.8 s.
   desk.browser.evaluate(
-      "window.busy = setInterval(() => { for (const end = performance.now() + 700; performance.now() < end;); }, 800), "
-      "0");
+      "window.busy = setInterval(() => { for (const end = performance.now() + 700; performance.now() < end;); }, "
+      "800), 0");
   desk.browser.wait_for(says("alarm", "Slow browser: this page stops for"));
   desk.browser.evaluate("clearInterval(window.busy), 0");
   desk.browser.wait_for("!(" + says("alarm", "Slow browser") + ")");

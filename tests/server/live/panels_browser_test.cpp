@@ -2,9 +2,11 @@
 // of worlds, a gamepad, what a reload keeps, and a picture that is drawn better again.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "tests/server/live/browser_desk.hpp"
+#include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::live {
 
@@ -79,6 +81,27 @@ TEST_CASE("In a browser: a camera's picture that is clicked takes the world's pl
   CHECK(desk.browser.complaints().empty());
 }
 
+TEST_CASE("In a browser: who measures sees the world, and is told that the robot stands meanwhile") {
+  Desk desk;
+  desk.place();
+  desk.browser.wait_for(kTwoPictures);
+  const auto measures = [&] {
+    return desk.browser.evaluate("document.getElementById('measure').getAttribute('aria-pressed')") == "true";
+  };
+  tap(desk.browser, "KeyZ");
+  CHECK(desk.browser.evaluate(kLarge) == "Camera");
+  tap(desk.browser, "KeyM");
+  CHECK(desk.browser.evaluate(kLarge) == "3D");
+  CHECK(measures());
+  desk.browser.wait_for(
+      "document.getElementById('drive-state').textContent === "
+      "'Manual1 stands: you point at a place now. Esc ends that'");
+  tap(desk.browser, "KeyZ");  // a picture that is enlarged ends it
+  CHECK_FALSE(measures());
+  desk.state_is("held");
+  CHECK(desk.browser.complaints().empty());
+}
+
 TEST_CASE("In a browser: the large camera is large again after a reload, and when its pictures come back") {
   Desk desk;
   desk.place();
@@ -146,6 +169,30 @@ TEST_CASE("In a browser: the list of worlds tells the command that starts each, 
                             "each.value); return names.indexOf('step-50') < names.indexOf('step-200'); })()") == true);
   desk.browser.click("#worlds-close");
   CHECK(desk.browser.evaluate("document.getElementById('worlds').open") == false);
+  CHECK(desk.browser.complaints().empty());
+}
+
+TEST_CASE("In a browser: what is still pressed drives no other robot once one's own has left") {
+  Desk desk;
+  plug_in_gamepad(desk.browser);
+  auto program = std::make_unique<support::UsarsimClient>(desk.world.usarsim_port());
+  program->send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n");
+  desk.browser.wait_for("document.getElementById('robot').options.length === 1");
+  support::UsarsimClient other(desk.world.usarsim_port());
+  other.send("INIT {ClassName USARBot.Kenaf} {Name R2} {Location 0,3,0}\r\n");
+  desk.browser.wait_for("document.getElementById('robot').options.length === 2");
+  tap(desk.browser, "KeyT");
+  desk.state_is("held");
+  let_it_look(desk.browser);
+  desk.browser.evaluate("pad.axes[1] = -1, pad.buttons[4].pressed = true, 0");
+  desk.state_is("driving");
+
+  program.reset();
+  desk.browser.wait_for("document.getElementById('notice').textContent === 'R1 left the world'");
+  tap(desk.browser, "KeyT");
+  desk.state_is("held");
+  let_it_look(desk.browser);
+  CHECK(desk.state_now() == "held");
   CHECK(desk.browser.complaints().empty());
 }
 

@@ -150,7 +150,11 @@ TEST_CASE("A picture of half the size shows the same moment under the same numbe
   program.line_that_begins("STA");
   Stream full(world.port(), "/camera/Camera.mjpg");
   full.part();
-  program.send("CONTROL {Type Pause}\r\n");
+  const auto number_of = [](const Part& part) { return std::stoul(header(part.headers, "X-Frame-Number")); };
+  WebClient page(world.port());
+  REQUIRE(page.open_websocket());
+  page.send_text(R"({"type":"pause","on":true})");
+  for (json message = json::object(); !message.value("paused", false);) message = page.message().value();
 
   // While time stands, one that nobody has asked for before is of the moment that the other one shows.
   Stream half(world.port(), "/camera/Camera.mjpg?size=half");
@@ -158,14 +162,13 @@ TEST_CASE("A picture of half the size shows the same moment under the same numbe
   CHECK(picture_in(small.bytes).width == 320);
   CHECK(picture_in(small.bytes).height == 240);
   Part large = full.part();
-  while (std::stoul(header(large.headers, "X-Frame-Number")) < std::stoul(header(small.headers, "X-Frame-Number")))
-    large = full.part();
+  while (number_of(large) < number_of(small)) large = full.part();
   CHECK(picture_in(large.bytes).width == 640);
-  CHECK(header(large.headers, "X-Frame-Number") == header(small.headers, "X-Frame-Number"));
+  CHECK(number_of(large) == number_of(small));
   CHECK(header(large.headers, "X-Robot-Time") == header(small.headers, "X-Robot-Time"));
 
   // Once time runs again, too.
-  program.send("CONTROL {Type Resume}\r\n");
+  page.send_text(R"({"type":"pause","on":false})");
   std::map<std::string, std::string> time_of;
   for (int i = 0; i < 20; ++i) {
     const Part part = full.part();

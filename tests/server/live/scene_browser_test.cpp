@@ -246,6 +246,13 @@ TEST_CASE("In a browser: a robot is placed where one clicks, or by the keyboard,
   desk.press("Escape");
   CHECK(desk.browser.evaluate("document.getElementById('drive-state').dataset.state") == "held");
 
+  // Nor does a place that is taken: the middle of the view, where the robot is.
+  desk.browser.evaluate("document.getElementById('place').click()");
+  desk.press("ArrowUp");
+  desk.press("Enter");
+  desk.browser.wait_for("document.getElementById('notice').textContent.includes('another robot')");
+  CHECK(desk.browser.evaluate("document.getElementById('drive-state').dataset.state") == "held");
+
   // by arrows: the first begins in the middle of the view, each next goes 0.1 m; turned to the left by 15 degrees each
   desk.browser.evaluate("document.getElementById('place').click()");
   for (int i = 0; i < 11; ++i) desk.press("ArrowRight");
@@ -306,7 +313,7 @@ TEST_CASE("In a browser: two clicks measure a distance, by the keyboard too") {
   for (int i = 0; i < 12; ++i) desk.press("ArrowUp");
   desk.press("Enter");
   CHECK(desk.words("pointing-words") ==
-        "1.217 m: horizontal 1.200 m, vertical 0.200 m, slope 9.5\u00b0");  // sqrt(1.44 + 0.04)
+        "1.217 m: horizontal 1.200 m, vertical 0.200 m, slope 9.5\u00b0. Esc ends.");  // sqrt(1.44 + 0.04)
   desk.browser.screenshot(desk.pictures / "measured.png");
   desk.press("Escape");
   CHECK_FALSE(desk.pressed("measure"));
