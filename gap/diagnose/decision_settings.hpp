@@ -33,7 +33,8 @@ struct DecisionSettings {
   // In a set, two effects at least stand in for each other: the sine of the angle between their shifts is at most this
   // (chosen: half of what one does, squared, the other could do).
   double apart_in_set = 0.7;
-  // Relative increase of the squared residual in another stage that refutes an effect (chosen).
+  // Relative increase of the squared residual in another stage that refutes an effect (chosen), in the kinds of
+  // channels in which the effect acts there.
   double more_left = 0.1;
   std::size_t most_effects = 6;
   SearchSettings search;

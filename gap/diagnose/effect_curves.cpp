@@ -5,6 +5,8 @@
 #include <iterator>
 #include <optional>
 
+#include "gap/diagnose/channels.hpp"
+
 namespace kenaf::gap::diagnose {
 namespace {
 
@@ -145,6 +147,17 @@ double squares_in_noise(const StageData& data, const GroupVectors& difference) {
 
 double length_in_noise(const StageData& data, const GroupVectors& difference) {
   return std::sqrt(squares_in_noise(data, difference));
+}
+
+std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& difference) {
+  std::vector<double> squares(kind_count(), 0);
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const StageGroup& group = data.groups[g];
+    for (const Series& series : group.series)
+      squares[series.kind] +=
+          (difference[g].array().square() / group.variance.array()).segment(series.first, series.count).sum();
+  }
+  return squares;
 }
 
 double gap_in_noise(const StageData& data) {

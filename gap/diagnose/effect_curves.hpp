@@ -86,6 +86,8 @@ void insert_points(EffectCurves& curves, const StageData& data, std::span<const 
 // Length of a difference in units of noise: sqrt(sum over bins of difference^2 / variance); and its square.
 double squares_in_noise(const StageData& data, const GroupVectors& difference);
 double length_in_noise(const StageData& data, const GroupVectors& difference);
+// Of each kind of channels (kind_of()).
+std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& difference);
 // Likewise for the residual of the nominal robot.
 double gap_in_noise(const StageData& data);
 

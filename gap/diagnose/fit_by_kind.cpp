@@ -17,17 +17,6 @@ constexpr double kShouldExplain = 0.5, kOfShift = 0.05;
 // memory is not independent in neighbouring bins.
 constexpr double kOfNoise = 2;
 
-std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& values) {
-  std::vector<double> squares(kind_count(), 0);
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    const StageGroup& group = data.groups[g];
-    for (const Series& series : group.series)
-      squares[series.kind] +=
-          (values[g].array().square() / group.variance.array()).segment(series.first, series.count).sum();
-  }
-  return squares;
-}
-
 std::vector<double> bins_of_kinds(const StageData& data) {
   std::vector<double> bins(kind_count(), 0);
   for (const StageGroup& group : data.groups)

@@ -206,6 +206,10 @@ void doubt_uncertain_values(StageDecision& d, std::span<const candidates::Candid
   d.verdict = verdict_of(d.effects);
 }
 
+std::vector<std::size_t> places_not_refuted(const StageDecision& decision) {
+  return places_where(decision, [](const ModelEffect& effect) { return !effect.refuted_by; });
+}
+
 std::vector<std::size_t> places_with_name(const StageDecision& decision) {
   return places_where(decision, [](const ModelEffect& effect) { return effect.doubts.empty(); });
 }

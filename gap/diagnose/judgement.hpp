@@ -26,6 +26,8 @@ void judge(StageDecision& decision, std::span<const candidates::Candidate> candi
 // held-out runs: `simulated`, a share. The shares of judge() come from curves.
 void doubt_unless_simulated(StageDecision& decision, double simulated, const DecisionSettings& settings);
 
+// Places of the effects that no other stage refutes.
+std::vector<std::size_t> places_not_refuted(const StageDecision& decision);
 // Places of the effects with a name.
 std::vector<std::size_t> places_with_name(const StageDecision& decision);
 // Those, and of effects that only resemble what they explain: without these, that would bend the others' values.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <vector>
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -10,36 +12,27 @@ namespace {
 // Rounds in which each stage is reconsidered with the findings of the others.
 constexpr int kMostHearings = 2;
 
-// The residual of a stage.
+// The residual of a stage; its squares for each kind of channels.
 struct LeftThere {
-  double deviance, squares;
+  double deviance;
+  std::vector<double> squares;
 };
 LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
   const GroupVectors rest = less(residuals_of(decision.data), shift);
   const Likelihood likelihood = likelihood_of(decision.data, rest, decision.best.model.likelihood.discrepancies);
   return {likelihood.deviance,
-          squares_in_noise(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
+          squares_of_kinds(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
 }
 
-// Whether the residual of `decision` grows with one effect at each of `values`, together with its best model and alone.
-bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
-             const DecisionSettings& settings) {
-  for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {
-    std::vector<Settings> asked{beside};
-    for (const Setting& value : values) {
-      asked.push_back(beside);
-      asked.back().push_back(value);
-    }
-    const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::fine);
-    const LeftThere without = left_by(decision, shifts.front());
-    const bool fits = std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
-      const LeftThere with = left_by(decision, shift);
-      return with.deviance - without.deviance < settings.evidence ||
-             with.squares < (1 + settings.more_left) * without.squares;
-    });
-    if (fits) return false;
-  }
-  return true;
+// Sums the squares of the kinds of channels in which an effect acts: its shift there is kActs of its whole one at
+// least, squared (chosen). A large residual in others hides no contradiction.
+double where_it_acts(const std::vector<double>& squares, const std::vector<double>& of_effect) {
+  constexpr double kActs = 0.05;
+  const double least = kActs * std::reduce(of_effect.begin(), of_effect.end());
+  double sum = 0;
+  for (std::size_t kind = 0; kind < squares.size(); ++kind)
+    if (of_effect[kind] >= least) sum += squares[kind];
+  return sum;
 }
 
 // The value of an effect or its rival, and both ends of its interval: a rival has the relative uncertainty of the
@@ -117,6 +110,28 @@ bool concerns(const StageDecision& decision, std::span<const candidates::Candida
 }
 
 }  // namespace
+
+bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
+             const DecisionSettings& settings) {
+  for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {
+    std::vector<Settings> asked{beside};
+    for (const Setting& value : values) {
+      asked.push_back(beside);
+      asked.back().push_back(value);
+    }
+    const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::fine);
+    const LeftThere without = left_by(decision, shifts.front());
+    const bool fits = std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
+      const LeftThere with = left_by(decision, shift);
+      const std::vector<double> of_effect = squares_of_kinds(decision.data, less(shift, shifts.front()));
+      return with.deviance - without.deviance < settings.evidence ||
+             where_it_acts(with.squares, of_effect) <
+                 (1 + settings.more_left) * where_it_acts(without.squares, of_effect);
+    });
+    if (fits) return false;
+  }
+  return true;
+}
 
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options) {

@@ -3,11 +3,17 @@
 // Thread safety: pure functions, except that the predictor runs. Deterministic.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::gap::diagnose {
+
+// Whether a candidate would increase the residual of a stage at each of its `values`, together with the stage's best
+// model and alone: the deviance, and the squares of the kinds of channels in which it acts there.
+bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
+             const DecisionSettings& settings);
 
 // Decides a stage again if another one names a rival of one of its effects, or refutes the effect or a rival: with it,
 // together with the other's best model and alone, the other's residual grows. `prepared`: one per stage.

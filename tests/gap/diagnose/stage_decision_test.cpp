@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "gap/diagnose/other_stages.hpp"
 #include "tests/gap/diagnose/linear_world.hpp"
 
 using namespace kenaf;
@@ -143,6 +144,24 @@ TEST_CASE("What another stage refutes is no rival, and gives way to a rival that
   const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, 1000}}, {}, 0.9};
   judge(both, std::vector<Candidate>(8), shares, shares, {});
   CHECK(both.effects[0].doubts == std::vector<Doubt>{Doubt::refuted});
+}
+
+TEST_CASE("A stage refutes an effect where it acts there, whatever else remains") {
+  // Nothing explains what remains in x, 100 in units of noise. The effect adds three times the noise to each bin of
+  // yaw: 48 times 9, a twentieth of all squares, but nine times what yaw has.
+  std::vector<Whole> effects(LinearWorld::kCandidates, Whole::Zero(world().bins()));
+  const Whole in_yaw = world().in_channel(test::WorldChannel::yaw, 1);
+  effects[3] = (in_yaw.array() != 0).select(3 * world().noise(2), 0);
+  const auto refuted = [&](const Whole& gap) {
+    StageDecision decision;
+    decision.data = world().data(gap + world().noise(1));
+    decision.best = {nominal_model(decision.data), world().curves(effects, decision.data)};
+    const std::vector<Setting> values{{3, 1}, {3, 0.9}, {3, 1.0}};
+    return refutes(decision, world().simulate(LinearWorld::linear(effects)), values, {});
+  };
+  const Whole in_x = world().in_channel(test::WorldChannel::x, 100);
+  CHECK(refuted(in_x));
+  CHECK_FALSE(refuted(in_x + effects[3]));
 }
 
 TEST_CASE("At 45 degrees they are distinguishable") {
@@ -510,6 +529,9 @@ TEST_CASE("A look-alike stays in the model without a name, and what explains not
   }
   CHECK(places_with_name(decision) == std::vector<std::size_t>{0});
   CHECK(places_to_keep(decision) == std::vector<std::size_t>{0, 1, 2});
+  CHECK(places_not_refuted(decision) == std::vector<std::size_t>{0, 1, 2, 3, 4});
+  decision.effects[3].refuted_by = Passage::command_to_drive;
+  CHECK(places_not_refuted(decision) == std::vector<std::size_t>{0, 1, 2, 4});
 }
 
 // What an effect explains of a stage, and what its model explains, depends on the model's other effects; its value at
