@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "gap/diagnose/channels.hpp"
@@ -158,6 +159,11 @@ std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& 
           (difference[g].array().square() / group.variance.array()).segment(series.first, series.count).sum();
   }
   return squares;
+}
+
+bool acts_in(std::span<const double> squares_of_shift, std::size_t kind) {
+  constexpr double kNoSmallPart = 0.05;  // chosen
+  return squares_of_shift[kind] >= kNoSmallPart * std::reduce(squares_of_shift.begin(), squares_of_shift.end());
 }
 
 double gap_in_noise(const StageData& data) {

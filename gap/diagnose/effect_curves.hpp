@@ -88,6 +88,9 @@ double squares_in_noise(const StageData& data, const GroupVectors& difference);
 double length_in_noise(const StageData& data, const GroupVectors& difference);
 // Of each kind of channels (kind_of()).
 std::vector<double> squares_of_kinds(const StageData& data, const GroupVectors& difference);
+// Whether an effect acts in a kind of channels: no small part of its shift's squares, squares_of_kinds(), is there.
+// What else happens in the others says nothing of it.
+bool acts_in(std::span<const double> squares_of_shift, std::size_t kind);
 // Likewise for the residual of the nominal robot.
 double gap_in_noise(const StageData& data);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
@@ -10,9 +9,9 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// An effect should explain a kind of channels where its shift is at least this share of the gap, rms, and at least this
-// part of its whole squared shift in noise units (chosen): what else happens in the others says nothing of it.
-constexpr double kShouldExplain = 0.5, kOfShift = 0.05;
+// An effect should explain a kind of channels in which it acts if its shift is at least this share of the gap there,
+// rms (chosen).
+constexpr double kShouldExplain = 0.5;
 // Residuals below this multiple of the noise are not coherent enough to blame an effect for (chosen): noise with a
 // memory is not independent in neighbouring bins.
 constexpr double kOfNoise = 2;
@@ -51,8 +50,7 @@ std::vector<FitByKind> fit_by_kind(const StageData& data, const StandingModel& s
   }
   const auto should_explain = [&](std::size_t effect, std::size_t kind) {
     const std::vector<double>& squares = squares_of_own[effect];
-    return squares[kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind] &&
-           squares[kind] >= kOfShift * std::reduce(squares.begin(), squares.end());
+    return squares[kind] > kShouldExplain * kShouldExplain * squares_of_gap[kind] && acts_in(squares, kind);
   };
 
   // what is left, beside that shift

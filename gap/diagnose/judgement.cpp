@@ -190,9 +190,16 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
   d.verdict = verdict_of(d.effects);
 }
 
-void doubt_unless_simulated(StageDecision& d, double simulated, const DecisionSettings& settings) {
-  if (!has_names(d) || simulated >= settings.stage_share) return;
-  for (ModelEffect& effect : d.effects) effect.doubts.push_back(Doubt::not_simulated);
+void doubt_unless_simulated(StageDecision& d, double on_runs, double on_manoeuvres, const DecisionSettings& settings) {
+  if (!has_names(d)) return;
+  const bool shown_by_others = std::ranges::all_of(d.effects, [&](const ModelEffect& effect) {
+    return effect.share_by_manoeuvre.shown_by_others >= settings.evidence;
+  });
+  const bool on_runs_too_little = !(on_runs >= settings.stage_share);
+  const bool on_manoeuvres_too_little = (shown_by_others || !d.complete) && !(on_manoeuvres >= settings.stage_share);
+  if (!on_runs_too_little && !on_manoeuvres_too_little) return;
+  for (ModelEffect& effect : d.effects)
+    effect.doubts.push_back(on_runs_too_little ? Doubt::not_simulated : Doubt::not_predicted);
   d.verdict = verdict_of(d.effects);
 }
 

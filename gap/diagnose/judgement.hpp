@@ -23,8 +23,11 @@ void judge(StageDecision& decision, std::span<const candidates::Candidate> candi
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings);
 
 // Takes all names away if the whole model explains too little of the stage's squared gap where it is simulated on
-// held-out runs: `simulated`, a share. The shares of judge() come from curves.
-void doubt_unless_simulated(StageDecision& decision, double simulated, const DecisionSettings& settings);
+// held-out runs (`on_runs`, a share; those of judge() come from curves) or on held-out manoeuvres (`on_manoeuvres`; the
+// same if there is one manoeuvre). A complete model may have effects that one manoeuvre alone shows, of which the
+// others predict nothing; beside a residual that nothing explains, such an effect may only resemble part of it.
+void doubt_unless_simulated(StageDecision& decision, double on_runs, double on_manoeuvres,
+                            const DecisionSettings& settings);
 
 // Places of the effects that no other stage refutes.
 std::vector<std::size_t> places_not_refuted(const StageDecision& decision);

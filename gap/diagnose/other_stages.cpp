@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -12,26 +11,25 @@ namespace {
 // Rounds in which each stage is reconsidered with the findings of the others.
 constexpr int kMostHearings = 2;
 
-// The residual of a stage; its squares for each kind of channels.
+// The residual of a stage.
 struct LeftThere {
-  double deviance;
-  std::vector<double> squares;
+  GroupVectors rest;
+  Likelihood likelihood;
 };
 LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
-  const GroupVectors rest = less(residuals_of(decision.data), shift);
-  const Likelihood likelihood = likelihood_of(decision.data, rest, decision.best.model.likelihood.discrepancies);
-  return {likelihood.deviance,
-          squares_of_kinds(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
+  LeftThere left{less(residuals_of(decision.data), shift), {}};
+  left.likelihood = likelihood_of(decision.data, left.rest, decision.best.model.likelihood.discrepancies);
+  return left;
 }
 
-// Sums the squares of the kinds of channels in which an effect acts: its shift there is kActs of its whole one at
-// least, squared (chosen). A large residual in others hides no contradiction.
-double where_it_acts(const std::vector<double>& squares, const std::vector<double>& of_effect) {
-  constexpr double kActs = 0.05;
-  const double least = kActs * std::reduce(of_effect.begin(), of_effect.end());
+// The residual's squares in the kinds of channels in which an effect acts: a large residual in others hides no
+// contradiction.
+double squares_where_it_acts(const StageData& data, const LeftThere& left, std::span<const double> squares_of_effect) {
+  const std::vector<double> squares =
+      squares_of_kinds(data, without_shared_shapes(data, left.rest, left.likelihood.discrepancies));
   double sum = 0;
   for (std::size_t kind = 0; kind < squares.size(); ++kind)
-    if (of_effect[kind] >= least) sum += squares[kind];
+    if (acts_in(squares_of_effect, kind)) sum += squares[kind];
   return sum;
 }
 
@@ -123,10 +121,10 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
     const LeftThere without = left_by(decision, shifts.front());
     const bool fits = std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
       const LeftThere with = left_by(decision, shift);
+      if (with.likelihood.deviance - without.likelihood.deviance < settings.evidence) return true;
       const std::vector<double> of_effect = squares_of_kinds(decision.data, less(shift, shifts.front()));
-      return with.deviance - without.deviance < settings.evidence ||
-             where_it_acts(with.squares, of_effect) <
-                 (1 + settings.more_left) * where_it_acts(without.squares, of_effect);
+      return squares_where_it_acts(decision.data, with, of_effect) <
+             (1 + settings.more_left) * squares_where_it_acts(decision.data, without, of_effect);
     });
     if (fits) return false;
   }

@@ -306,6 +306,11 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& 
         words.push_back(
             fmt::format("simulated on {}, the model explains too little of the stage's gap", measured_on(d)));
         break;
+      case Doubt::not_predicted:
+        words.push_back(
+            "simulated on a manoeuvre that the fit did not have, the model explains too little of the stage's gap: "
+            "drive another one that shows it");
+        break;
       case Doubt::refuted:
         words.push_back(fmt::format("it does not fit the gap from {}", passage_name(*effect.refuted_by)));
         break;

@@ -43,6 +43,7 @@ enum class Doubt {
   little_explained,  // in the channels where it acts, the whole model explains too little on held-out runs
   leaves_much,       // in channels that it should explain, the model leaves too much of its shift
   not_simulated,     // simulated on held-out runs, the whole model explains too little of the stage
+  not_predicted,     // the same on held-out manoeuvres: the others predict nothing of what one manoeuvre shows
 };
 
 // The data of a stage around a model: the same noise, and the open shapes (noise_floor.hpp) of the simulation with the

@@ -169,16 +169,6 @@ void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision
   if (rivals.size() > 1) decision.verdict = Verdict::ambiguous;
 }
 
-// What the model explains where it is simulated in held-out runs; in held-out manoeuvres as well if the others show all
-// its effects.
-double simulated_share(const StageDiagnosis& stage, const DecisionSettings& settings) {
-  const bool shown_by_others = std::ranges::all_of(stage.decision.effects, [&](const ModelEffect& effect) {
-    return effect.share_by_manoeuvre.shown_by_others >= settings.evidence;
-  });
-  const double of_runs = stage.gap.explains.value, of_manoeuvres = stage.gap_by_manoeuvre.explains.value;
-  return shown_by_others ? std::min(of_runs, of_manoeuvres) : of_runs;
-}
-
 // A significant but invisibly small difference without a name is no gap.
 void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings) {
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
@@ -258,7 +248,8 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   // only effects with a name and their look-alikes, unless the named ones need the others to be significant
   if (const std::size_t named = places_with_name(stage.decision).size(); named > 0)
     with_alone(places_to_keep(stage.decision), named);
-  doubt_unless_simulated(stage.decision, simulated_share(stage, options.decision), options.decision);
+  doubt_unless_simulated(stage.decision, stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value,
+                         options.decision);
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 

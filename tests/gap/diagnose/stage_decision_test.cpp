@@ -500,11 +500,28 @@ StageDecision judged_with(const EffectValue& value, double simulated = 0.9, doub
   decision.effects.front().sure_from = sure_from;
   const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, 1000}}, {}, 0.9};
   judge(decision, std::vector<Candidate>(1), shares, shares, {});
-  doubt_unless_simulated(decision, simulated, {});
+  doubt_unless_simulated(decision, simulated, simulated, {});
   doubt_uncertain_values(decision, std::vector<Candidate>(1));
   return decision;
 }
 }  // namespace
+
+TEST_CASE("Beside an unexplained rest, what one manoeuvre alone shows has a name only if others predict part of it") {
+  const auto doubts = [](bool complete, double on_manoeuvres, double shown_by_others = 1) {
+    StageDecision decision;
+    decision.complete = complete;
+    decision.effects.push_back({0, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {0}, {}, {}});
+    const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, shown_by_others}}, {}, 0.9};
+    judge(decision, std::vector<Candidate>(1), shares, shares, {});
+    doubt_unless_simulated(decision, 0.9, on_manoeuvres, {});
+    return decision.effects.front().doubts;
+  };
+  CHECK(doubts(true, 0).empty());  // only that manoeuvre shows it, and nothing else is left
+  CHECK(doubts(false, 0) == std::vector<Doubt>{Doubt::not_predicted});
+  CHECK(doubts(false, -1.1) == std::vector<Doubt>{Doubt::not_predicted});
+  CHECK(doubts(false, 0.3).empty());  // the others show little of it, and that agrees
+  CHECK(doubts(true, 0, 1000) == std::vector<Doubt>{Doubt::not_predicted});  // they should show it
+}
 
 TEST_CASE("An effect that does not fit in some kind of channels resembles the cause, and has no name") {
   const auto doubts = [](const FitByKind& fit) {
