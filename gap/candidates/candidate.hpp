@@ -40,6 +40,9 @@ struct Candidate {
   std::string part_of;
   // Keys of the robot's TOML file that set() changes: "effects.command_slew.slowness_s2pm", "track.left_center_m[1]".
   std::vector<std::string> keys;
+  // Whether set() moves what it finds, as a user-defined effect does, rather than replaces it: to be called after the
+  // others.
+  bool is_relative = false;
   // Sets it to `value`; call once per robot. The robot must be the one it was made for; other candidates may be set
   // already.
   std::function<void(physics::RobotDescription&, double value)> set;

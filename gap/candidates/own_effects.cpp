@@ -122,6 +122,8 @@ Candidate read_effect(description::TomlReader& table, const RobotDescription& ro
   for (const OwnMove& move : moves)
     candidate.keys.insert(candidate.keys.end(), move.number.written_as.begin(), move.number.written_as.end());
 
+  candidate.is_relative = true;
+
   // each number x becomes x (1 + scale by) + add by, with by = value - neutral
   candidate.set = [moves, neutral = candidate.neutral](RobotDescription& varied, double value) {
     if (value == neutral) return;  // -0 + 0 would not be -0

@@ -68,9 +68,8 @@ double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Diff
   double sum = 0, bins = 0;
   for (std::size_t s = 0; s < floors.size(); ++s) {
     const std::vector<diagnose::StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
-    const diagnose::Shift deviations =
+    const auto [deviations, shared] =
         diagnose::deviations_from_repeats(features, residuals[s], runs.same_command_sequence);
-    const std::vector<std::vector<bool>> shared = diagnose::shared_bins(features, runs.same_command_sequence);
     for (std::size_t r = 0; r < deviations.size(); ++r) {
       if (deviations[r].size() == 0) continue;
       sum += floors[s].whiteners[r](deviations[r]).squaredNorm();

@@ -50,7 +50,9 @@ ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::Ro
       return diagnose::squares_by_kind(features, floors[s], differences);
     };
     const Squares stage{squares(runs.residuals[s]), squares(by_report[s]), squares(by_hidden[s]),
-                        squares(diagnose::deviations_from_repeats(features, by_hidden[s], runs.same_command_sequence))};
+                        diagnose::squares_of_floor(
+                            features, floors[s],
+                            diagnose::deviations_from_repeats(features, by_hidden[s], runs.same_command_sequence))};
     result.of_stage[s] = shrinks_of(stage);
     append(together.before, stage.before);
     append(together.report, stage.report);

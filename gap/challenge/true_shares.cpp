@@ -33,12 +33,11 @@ class StageGap {
                                                          diagnose::kOpenStart_m, diagnose::kOpenStart_rad));
     left_by_truth_ = difference(residuals_, shift(truth));
     const diagnose::KindSquares before = squares(residuals_);
-    const diagnose::KindSquares repeats =
-        squares(diagnose::deviations_from_repeats(features_, left_by_truth_, runs_.same_command_sequence));
-    weights_ = diagnose::kind_weights(before, repeats);
+    const diagnose::KindSquares floor = diagnose::squares_of_floor(
+        features_, floor_, diagnose::deviations_from_repeats(features_, left_by_truth_, runs_.same_command_sequence));
+    weights_ = diagnose::kind_weights(before, floor);
     before_ = diagnose::weighted_rms(before, weights_);
-    const double of_repeats = diagnose::weighted_rms(repeats, weights_);
-    gap_floor_ = std::min(of_repeats > 0 ? of_repeats : 1.0, before_);
+    gap_floor_ = std::min(diagnose::weighted_rms(floor, weights_), before_);
   }
 
   bool is_measured() const {

@@ -80,7 +80,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     std::fputs(diagnose::diagnosis_text(result).c_str(), stdout);
     std::printf("\nThe report is in %s\n", diagnose::write_diagnosis(result, options->out).c_str());
     if (!options->curves) return;
-    const std::filesystem::path curves = std::filesystem::path(options->out) / "curves.mcap";
+    const std::filesystem::path curves = std::filesystem::path(options->out) / diagnose::kCurvesFile;
     write_report_curves(result, curves);
     std::printf("The curves are in %s\n", curves.c_str());
   });

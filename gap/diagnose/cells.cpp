@@ -12,16 +12,16 @@ namespace {
 
 using Eigen::VectorXd;
 
-// For bins that share a channel and a stretch: their sum over the root of their number.
+// For bins that count and share a channel and a stretch: their sum over the root of their number.
+template <class Counts>
 std::vector<double> cells_of(const std::vector<Bin>& bins, double span_s, const VectorXd& white, double stretch_s,
-                             const VectorXd* count) {
+                             Counts&& counts) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
   for (std::size_t b = 0; b < bins.size(); ++b) {
-    const auto i = static_cast<Eigen::Index>(b);
-    if (count != nullptr && (*count)[i] == 0) continue;
+    if (!counts(b)) continue;
     const auto stretch = static_cast<std::size_t>((static_cast<double>(bins[b].span) + 0.5) * span_s / stretch_s);
     auto& [sum, number] = sums[{bins[b].channel, stretch}];
-    sum += white[i], ++number;
+    sum += white[static_cast<Eigen::Index>(b)], ++number;
   }
   std::vector<double> cells;
   for (const auto& [key, sum] : sums) cells.push_back(sum.first / std::sqrt(sum.second));
@@ -40,7 +40,8 @@ CellEnergy cell_energy(const StageData& data, const GroupVectors& rest, double s
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     const StageGroup& group = data.groups[g];
     const double span_s = group.t_s.front() / (static_cast<double>(group.bins.front().span) + 0.5);
-    for (const double z : cells_of(group.bins, span_s, white[g], stretch_s, &group.count)) {
+    const auto is_used = [&](std::size_t b) { return group.count[static_cast<Eigen::Index>(b)] > 0; };
+    for (const double z : cells_of(group.bins, span_s, white[g], stretch_s, is_used)) {
       energy.sum += z * z;
       ++energy.cells;
     }
@@ -49,12 +50,13 @@ CellEnergy cell_energy(const StageData& data, const GroupVectors& rest, double s
 }
 
 double inflation_from_repeats(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
-                              const std::vector<VectorXd>& deviations, double stretch_s) {
+                              const Deviations& repeats, double stretch_s) {
   std::vector<double> squares;
   for (std::size_t r = 0; r < features.size(); ++r) {
-    if (deviations[r].size() == 0) continue;
-    const VectorXd white = floor.whiteners[r](deviations[r]);
-    for (const double z : cells_of(features[r].bins, features[r].span_s, white, stretch_s, nullptr))
+    if (repeats.of_runs[r].size() == 0) continue;
+    const VectorXd white = floor.whiteners[r](repeats.of_runs[r]);
+    const auto is_shared = [&](std::size_t b) { return repeats.shared[r][b]; };
+    for (const double z : cells_of(features[r].bins, features[r].span_s, white, stretch_s, is_shared))
       squares.push_back(z * z);
   }
   if (squares.empty()) return 1;

@@ -19,6 +19,6 @@ CellEnergy cell_energy(const StageData& data, const GroupVectors& rest, double s
 
 // Ratio of the variance between repeats, by cells, to the floor's variance: at least 1; 1 without repeats.
 double inflation_from_repeats(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
-                              const std::vector<Eigen::VectorXd>& deviations, double stretch_s);
+                              const Deviations& repeats, double stretch_s);
 
 }  // namespace kenaf::gap::diagnose

@@ -111,18 +111,33 @@ struct OpenModel {
   std::size_t candidate;
 };
 
-// Models with each rival of the effect that has most of them; the best single effects if nothing is named.
+// Models with each rival of the effect that has most of them; if there are sets alone, those without each member of the
+// largest set; the best single effects if nothing is named.
 std::vector<OpenModel> open_models(const StageDiagnosis& stage) {
   constexpr std::size_t kMostRivals = 4;
   std::vector<OpenModel> models;
   const StageDecision& decision = stage.decision;
   if (decision.verdict == Verdict::ambiguous) {
-    const auto most = std::ranges::max_element(decision.effects, {}, [](const ModelEffect& effect) {
-      return effect.doubts.empty() ? effect.rivals.size() : 0;
-    });
-    const auto place = static_cast<std::size_t>(most - decision.effects.begin());
-    for (const Settings& settings : decision.models_of_rivals[place])
-      models.push_back({settings, settings[place].candidate});
+    const auto most_of = [&](auto&& count_of) {
+      std::size_t most = 0, place = 0;
+      for (std::size_t e = 0; e < decision.effects.size(); ++e)
+        if (const std::size_t count = decision.effects[e].doubts.empty() ? count_of(e) : 0; count > most)
+          most = count, place = e;
+      return std::pair{most, place};
+    };
+    const auto [rivals, place] = most_of([&](std::size_t e) { return decision.models_of_rivals[e].size(); });
+    const auto [partners, member] = most_of([&](std::size_t e) { return decision.effects[e].partners.size(); });
+    if (rivals > 1) {
+      for (const Settings& settings : decision.models_of_rivals[place])
+        models.push_back({settings, settings[place].candidate});
+    } else if (partners > 0) {
+      std::vector<std::size_t> set = decision.effects[member].partners;
+      set.push_back(member);
+      std::ranges::sort(set);
+      for (const std::size_t without : set)
+        models.push_back({settings_of(values_without(decision.data, decision.best, {&without, 1}).places),
+                          decision.effects[without].candidate});
+    }
   } else if (decision.verdict == Verdict::unknown) {
     for (const Model& single : decision.singles)
       models.push_back({settings_of(single.places), single.places.front().curve});
@@ -131,7 +146,8 @@ std::vector<OpenModel> open_models(const StageDiagnosis& stage) {
   return models;
 }
 
-void propose_next(Diagnosis& d) {
+// `stop`: once true, proposes nothing.
+void propose_next(Diagnosis& d, const std::atomic<bool>* stop) {
   // the stage with the largest gap among those that leave a choice
   const StageDiagnosis* open = nullptr;
   for (const StageDiagnosis& stage : d.stages) {
@@ -156,8 +172,13 @@ void propose_next(Diagnosis& d) {
         options.sigma_of_channel[c] = std::hypot(
             stage.nominal_floor.sigma[c], stage.decision.best.model.likelihood.discrepancies.of_kind[kind_of(c)].sigma);
   options.threads = d.options.jobs;
-  d.next = propose_manoeuvres(d.observations.robot, rivals, options);
-  d.to_separate = std::move(candidates);
+  options.stop = stop;
+  try {
+    d.next = propose_manoeuvres(d.observations.robot, rivals, options);
+    d.to_separate = std::move(candidates);
+  } catch (const Stopped&) {
+    // the diagnosis itself is finished
+  }
 }
 
 // Simulates the baseline's runs and subtracts their residuals.
@@ -195,12 +216,13 @@ namespace {
 // Sensors hardly show errors of the description's numbers: the estimate of earlier stages is used if it is larger.
 void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                      Predictor& predictor, const StageOptions& options) {
-  double numbers_off = 0;
+  double largest = 0;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const StageDecision& decision = stages[s].decision;
     const double own = numbers_off_of_intervals(decision.data, rest_of(decision.data, decision.best.model),
                                                 decision.best.model.likelihood.discrepancies);
-    numbers_off = stages[s].passage == Passage::body_to_sensor ? std::max(own, numbers_off) : own;
+    largest = std::max(largest, own);
+    const double numbers_off = stages[s].passage == Passage::body_to_sensor ? largest : own;
     widen_intervals(stages[s], prepared[s], predictor, numbers_off, options);
   }
 }
@@ -259,7 +281,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
     widen_intervals(d.stages, prepared, predictor, stage_options);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
-    if (options.propose_next && options.ranks.rank == 0) propose_next(d);
+    if (options.propose_next && options.ranks.rank == 0) propose_next(d, options.stop);
     progress.begin("done", 1, 1, 1, predictor.roll_outs());
   } catch (const Stopped&) {
     // stopped: finished stages are kept, but there is no verdict

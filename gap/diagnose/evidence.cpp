@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 #include <span>
 
@@ -28,28 +29,37 @@ double quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
-// Expected reduction of these data's deviance by each effect, with the others refitted, if the model is right.
-VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
-  const MatrixXd information =
-      inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(data, standing));
-  VectorXd expected(information.rows());
-  for (Index e = 0; e < expected.size(); ++e) {
-    std::vector<Index> others;
-    for (Index i = 0; i < expected.size(); ++i)
-      if (i != e) others.push_back(i);
-    // the effect's direction orthogonal to the others (Schur complement)
-    double taken_up = 0;
-    if (!others.empty()) {
-      const VectorXd shared = information(others, e);
-      const MatrixXd of_others = information(others, others);
-      taken_up = shared.dot(of_others.completeOrthogonalDecomposition().solve(shared));
+// Expected reduction of these data's deviance by effects together, with the others refitted, if the model is right.
+class EvidenceExpected {
+ public:
+  EvidenceExpected(const StageData& data, const StandingModel& standing)
+      : information_(
+            inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(data, standing))),
+        away_(information_.rows()) {
+    for (Index e = 0; e < away_.size(); ++e) {
+      const OnCurve& place = standing.model.places[static_cast<std::size_t>(e)];
+      away_[e] = place.value - standing.curves.candidates[place.curve].present;
     }
-    const OnCurve& place = standing.model.places[static_cast<std::size_t>(e)];
-    const double away = place.value - standing.curves.candidates[place.curve].present;
-    expected[e] = away * away * std::max(0.0, information(e, e) - taken_up);
   }
-  return expected;
-}
+
+  double operator()(const Places& together) const {
+    std::vector<Index> these, others;
+    for (Index i = 0; i < away_.size(); ++i)
+      (std::ranges::count(together, static_cast<std::size_t>(i)) > 0 ? these : others).push_back(i);
+    // the effects' directions orthogonal to the others (Schur complement)
+    MatrixXd information = information_(these, these);
+    if (!others.empty()) {
+      const MatrixXd shared = information_(others, these), of_others = information_(others, others);
+      information -= shared.transpose() * of_others.completeOrthogonalDecomposition().solve(shared);
+    }
+    const VectorXd away = away_(these);
+    return std::max(0.0, away.dot(information * away));
+  }
+
+ private:
+  MatrixXd information_;
+  VectorXd away_;
+};
 
 StageData data_of(const StageView& view, Passage passage, const UsedParts& used) {
   return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
@@ -106,7 +116,7 @@ std::vector<Whitener> whiteners_of_means(const StageData& data) {
 
 // Squared residuals of the used runs' means, by kind.
 KindSquares squares_of_groups(const StageData& data, const std::vector<Whitener>& whiteners, const GroupVectors& rest) {
-  KindSquares squares{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+  KindSquares squares = no_squares();
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     const StageGroup& group = data.groups[g];
     const VectorXd white = whiteners[g](rest[g]);
@@ -119,11 +129,6 @@ KindSquares squares_of_groups(const StageData& data, const std::vector<Whitener>
     }
   }
   return squares;
-}
-
-KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
-  for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += more.sum[k], sum.bins[k] += more.bins[k];
-  return sum;
 }
 
 // A model's squared residuals by kind: with its effects alone, and with errors of the description's numbers.
@@ -169,8 +174,8 @@ struct LeftOfFolds {
     Left fitted, held;
   };
   std::vector<Without> without;
-  std::vector<VectorXd> shown;          // for each fold, evidence_expected() of the others
-  std::vector<std::vector<bool>> seen;  // likewise, seen_in()
+  std::vector<std::vector<double>> shown;  // for each fold and each set, EvidenceExpected of the others
+  std::vector<std::vector<bool>> seen;     // likewise, seen_in()
 
   LeftOfFolds& operator+=(const LeftOfFolds& more) {
     nominal += more.nominal;
@@ -205,11 +210,9 @@ LeftOfFolds left_of_folds(const StageView& view, Passage passage, const Standing
     const auto left_by = [&](const Model& model) { return left_in(tested_data, whiteners, fitted_data, model); };
     const std::vector<bool> seen = seen_in(fitted_data, standing);
     const Model whole = refit_seen(fitted_data, standing, seen, beyond);
-    left[f] = {squares_of_groups(tested_data, whiteners, residuals_of(tested_data)),
-               left_by(whole),
-               {},
-               {evidence_expected(fitted_data, standing)},
-               {seen}};
+    left[f] = {squares_of_groups(tested_data, whiteners, residuals_of(tested_data)), left_by(whole), {}, {{}}, {seen}};
+    const EvidenceExpected evidence(fitted_data, standing);
+    for (const Places& set : left_out) left[f].shown.front().push_back(evidence(set));
     for (std::size_t s = 0; s < left_out.size(); ++s)
       left[f].without.push_back(
           {left_by(models_without[s]), left_by(held.empty() ? others_of(standing, whole, left_out[s]) : held[s])});
@@ -231,8 +234,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
 
   // in the stage each kind is weighted by its own gap; a single kind by its rms
   const KindSquares& before = left.nominal;
-  const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
-  const std::vector<double> weights = kind_weights(before, noise);
+  const std::vector<double> weights = kind_weights(before, no_squares());
   const auto of_stage = [&](const KindSquares& squares) {
     return explained_share(weighted_rms(before, weights), weighted_rms(squares, weights), 1);
   };
@@ -255,8 +257,8 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
     share.beyond_numbers = more_than_without([&](const Left& by) { return of_stage(by.with_numbers); });
     share.model_of_stage = shares.model;
     share.shown_by_others = std::numeric_limits<double>::infinity();
-    for (const VectorXd& of_fold : left.shown)
-      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
+    for (const std::vector<double>& of_fold : left.shown)
+      share.shown_by_others = std::min(share.shown_by_others, of_fold[s]);
     // largest share of everything, including noise: chance may remove all of a gap hardly above noise
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
@@ -281,34 +283,49 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
 
 }  // namespace
 
-GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after,
-                       const std::vector<VectorXd>& deviations, std::uint64_t seed) {
+GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after, const Deviations& repeats,
+                       std::uint64_t seed) {
   // weights by each kind's own gap, the same before and after
   const std::vector<StageFeatures>& features = *view.features;
-  const KindSquares before = squares_by_kind(features, *view.floor, *view.residuals);
-  const KindSquares repeats = squares_by_kind(features, *view.floor, deviations);
-  const std::vector<double> weights = kind_weights(before, repeats);
+  const std::vector<KindSquares> before_of_runs = squares_of_runs(features, *view.floor, *view.residuals),
+                                 after_of_runs = squares_of_runs(features, *view.floor, after);
+  const auto sum_of = [&](const std::vector<KindSquares>& of_runs, std::span<const std::size_t> runs) {
+    KindSquares sum = no_squares();
+    for (const std::size_t r : runs) sum += of_runs[r];
+    return sum;
+  };
+  std::vector<std::size_t> all(features.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const KindSquares before = sum_of(before_of_runs, all);
+
+  const KindSquares floor = squares_of_floor(features, *view.floor, repeats);
+  const std::vector<double> weights = kind_weights(before, floor);
   GapMeasure gap;
   gap.before = weighted_rms(before, weights);
-  gap.after = weighted_rms(squares_by_kind(features, *view.floor, after), weights);
-  // without repeats, noise is the only known floor
-  const double of_repeats = weighted_rms(repeats, weights);
-  gap.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, gap.before);
+  gap.after = weighted_rms(sum_of(after_of_runs, all), weights);
+  gap.floor = std::min(weighted_rms(floor, weights), gap.before);
   gap.shrink.value = shrink(gap.before, gap.after, gap.floor);
   gap.explains.value = explained_share(gap.before, gap.after, gap.floor);
 
-  // groups of repeats drawn with replacement
+  // groups of repeats that measured something, drawn with replacement: one alone shows no spread
+  std::vector<std::span<const std::size_t>> groups;
+  for (const std::vector<std::size_t>& group : *view.repeats)
+    if (std::ranges::any_of(group, [&](std::size_t r) { return !features[r].bins.empty(); }))
+      groups.emplace_back(group);
+  if (groups.size() < 2) return gap;
   std::mt19937_64 random(seed);
   std::vector<double> shrinks, shares;
   for (std::size_t i = 0; i < kResamplings; ++i) {
-    std::vector<double> drawn(features.size(), 0);
-    for (std::size_t g = 0; g < view.repeats->size(); ++g)
-      for (const std::size_t r : (*view.repeats)[random() % view.repeats->size()]) ++drawn[r];
-    const double drawn_before = weighted_rms(squares_by_kind(features, *view.floor, *view.residuals, drawn), weights);
-    const double drawn_after = weighted_rms(squares_by_kind(features, *view.floor, after, drawn), weights);
-    if (drawn_before <= gap.floor) continue;
-    shrinks.push_back(shrink(drawn_before, drawn_after, gap.floor));
-    shares.push_back(explained_share(drawn_before, drawn_after, gap.floor));
+    KindSquares drawn_before = no_squares(), drawn_after = no_squares();
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const std::span<const std::size_t> group = groups[random() % groups.size()];
+      drawn_before += sum_of(before_of_runs, group);
+      drawn_after += sum_of(after_of_runs, group);
+    }
+    const double rms_before = weighted_rms(drawn_before, weights), rms_after = weighted_rms(drawn_after, weights);
+    if (rms_before <= gap.floor) continue;
+    shrinks.push_back(shrink(rms_before, rms_after, gap.floor));
+    shares.push_back(explained_share(rms_before, rms_after, gap.floor));
   }
 
   // 95 % quantiles, which always include the value itself
@@ -331,7 +348,10 @@ std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage
     // only single runs whose absence hides an effect
     if (group.runs.size() > 1) continue;
     const std::size_t run = group.runs.front();
-    if (evidence_expected(data_of(view, passage, UsedParts::without({run})), standing).minCoeff() >= evidence) continue;
+    const EvidenceExpected expected(data_of(view, passage, UsedParts::without({run})), standing);
+    bool shown_by_others = true;
+    for (std::size_t e = 0; e < standing.model.places.size(); ++e) shown_by_others &= expected({e}) >= evidence;
+    if (shown_by_others) continue;
 
     // bins are ordered by channel: sum the model's squared shift by time
     std::map<double, double> squares;

@@ -31,10 +31,10 @@ struct GapMeasure {
   Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};
   Interval explains{kNotMeasured, kNotMeasured, kNotMeasured};
 };
-// `after`: a model's residual of each run; intervals from resampling groups of repeats. `deviations`: of each run from
-// the mean of its repeats, empty without repeats.
-GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
-                       const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
+// `after`: a model's residual of each run. The floor is squares_of_floor(). Intervals from resampling groups of
+// repeats: not measured if there is one.
+GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after, const Deviations& repeats,
+                       std::uint64_t seed);
 
 // For each run that is the only one of its manoeuvre, and without which some effect should gain less than `evidence` on
 // the others: its first half, which ends where half of the model's squared shift is reached.
@@ -63,8 +63,8 @@ struct HeldOutShares {
     double of_stage = 0, beyond_numbers = 0, of_kind = 0;
     std::size_t kind = 0;
     double model_of_kind = 0;  // share of the whole model there
-    // Expected deviance gain of the effect on the fitted runs, if the model is right; the smallest of all folds. If
-    // small, only the held-out runs show the effect, and the others cannot predict it.
+    // Expected deviance gain of the effect, or of all of a set together, on the fitted runs, if the model is right; the
+    // smallest of all folds. If small, only the held-out runs show it, and the others cannot predict it.
     double shown_by_others = 0;
     double model_of_stage = 0;  // share of the whole model in the stage, measured like of_stage
   };

@@ -30,14 +30,22 @@ Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats) {
   return dealt_out(single, std::min(kMostFolds, most > 1 ? most : repeats.size()));
 }
 
-Folds folds_by_manoeuvre(const Observations& observations) {
+Folds folds_by_manoeuvre(const Observations& observations, const std::vector<std::vector<std::size_t>>& repeats) {
+  const auto name = [&](std::size_t run) -> const std::string& { return observations.runs[run].manoeuvre; };
+  const bool all_alike = std::ranges::all_of(
+      observations.runs, [&](const Observation& run) { return run.manoeuvre == observations.runs.front().manoeuvre; });
+
+  // without names that tell them apart, runs with different commands are different manoeuvres
   std::map<std::string, std::size_t> known;
   std::vector<std::vector<std::size_t>> manoeuvres;
-  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
-    const auto [place, is_new] = known.try_emplace(observations.runs[r].manoeuvre, manoeuvres.size());
-    if (is_new) manoeuvres.emplace_back();
-    manoeuvres[place->second].push_back(r);
+  for (const std::vector<std::size_t>& group : repeats) {
+    const bool is_named = !all_alike && !name(group.front()).empty();
+    std::size_t place = manoeuvres.size();
+    if (is_named) place = known.try_emplace(name(group.front()), place).first->second;
+    if (place == manoeuvres.size()) manoeuvres.emplace_back();
+    manoeuvres[place].insert(manoeuvres[place].end(), group.begin(), group.end());
   }
+  for (std::vector<std::size_t>& manoeuvre : manoeuvres) std::ranges::sort(manoeuvre);
   return dealt_out(manoeuvres, std::min(kMostFolds, manoeuvres.size()));
 }
 

@@ -31,8 +31,9 @@ using Folds = std::vector<Fold>;
 // Distributes the repeats of each manoeuvre over different folds: as many folds as the most repeated manoeuvre has
 // runs, at most five. Without repeats, as many as there are manoeuvres, at most five.
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
-// Keeps all repeats of a manoeuvre together, in at most five folds.
-Folds folds_by_manoeuvre(const Observations& observations);
+// Keeps all runs of a manoeuvre together, in at most five folds. Where names do not tell manoeuvres apart (none, or the
+// same for all runs), each group of repeats counts as one.
+Folds folds_by_manoeuvre(const Observations& observations, const std::vector<std::vector<std::size_t>>& repeats);
 // Replaces each run of `first_halves` by that half in the first fold and the other half in the second. A single fold is
 // returned unchanged.
 Folds with_halves(Folds folds, std::span<const RunPart> first_halves);

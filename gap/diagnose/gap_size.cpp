@@ -7,20 +7,55 @@
 
 namespace kenaf::gap::diagnose {
 
-KindSquares squares_by_kind(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
-                            const std::vector<Eigen::VectorXd>& differences, const std::vector<double>& weights) {
-  KindSquares squares{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+KindSquares no_squares() {
+  return {std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+}
+
+KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
+  for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += more.sum[k], sum.bins[k] += more.bins[k];
+  return sum;
+}
+
+std::vector<KindSquares> squares_of_runs(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
+                                         const std::vector<Eigen::VectorXd>& differences,
+                                         const std::vector<std::vector<bool>>& counted) {
+  std::vector<KindSquares> of_runs(features.size(), no_squares());
   for (std::size_t r = 0; r < features.size(); ++r) {
-    const double weight = weights.empty() ? 1 : weights[r];
-    if (weight == 0 || features[r].bins.empty() || differences[r].size() == 0) continue;
+    if (features[r].bins.empty() || differences[r].size() == 0) continue;
     const Eigen::VectorXd white = floor.whiteners[r](differences[r]);
     for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
+      if (!counted.empty() && !counted[r][b]) continue;
       const std::size_t kind = kind_of(features[r].bins[b].channel);
       const double value = white[static_cast<Eigen::Index>(b)];
-      squares.sum[kind] += weight * value * value;
-      squares.bins[kind] += weight;
+      of_runs[r].sum[kind] += value * value;
+      ++of_runs[r].bins[kind];
     }
   }
+  return of_runs;
+}
+
+KindSquares squares_by_kind(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
+                            const std::vector<Eigen::VectorXd>& differences,
+                            const std::vector<std::vector<bool>>& counted) {
+  KindSquares squares = no_squares();
+  for (const KindSquares& of_run : squares_of_runs(features, floor, differences, counted)) squares += of_run;
+  return squares;
+}
+
+KindSquares squares_of_floor(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
+                             const Deviations& repeats) {
+  KindSquares noise = no_squares();
+  for (const StageFeatures& run : features) {
+    const Eigen::VectorXd sigma = noise_of_difference(run);
+    for (std::size_t b = 0; b < run.bins.size(); ++b) {
+      const std::size_t kind = kind_of(run.bins[b].channel);
+      noise.sum[kind] += sigma[static_cast<Eigen::Index>(b)] * sigma[static_cast<Eigen::Index>(b)];
+      ++noise.bins[kind];
+    }
+  }
+  KindSquares squares = squares_by_kind(features, floor, repeats.of_runs, repeats.shared);
+  for (std::size_t k = 0; k < squares.sum.size(); ++k)
+    if (squares.sum[k] == 0) squares.sum[k] = noise.sum[k], squares.bins[k] = noise.bins[k];
   return squares;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -20,9 +21,22 @@ struct KindSquares {
   std::vector<double> sum;  // sum of squares, in units of noise
   std::vector<double> bins;
 };
-// Squares of each run's whitened differences. `weights`: of runs, 0 to leave one out; empty: all 1.
+KindSquares no_squares();
+KindSquares& operator+=(KindSquares& sum, const KindSquares& more);
+
+// Squares of each run's whitened differences, none of a run without any. `counted`: for each run, the bins that count;
+// empty: all.
+std::vector<KindSquares> squares_of_runs(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
+                                         const std::vector<Eigen::VectorXd>& differences,
+                                         const std::vector<std::vector<bool>>& counted = {});
+// Their sum over all runs.
 KindSquares squares_by_kind(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
-                            const std::vector<Eigen::VectorXd>& differences, const std::vector<double>& weights = {});
+                            const std::vector<Eigen::VectorXd>& differences,
+                            const std::vector<std::vector<bool>>& counted = {});
+// Those of the spread of repeats; in kinds of channels without it, those that noise alone is expected to have: 1 in
+// each bin, more in a difference from a baseline (noise_of_difference()).
+KindSquares squares_of_floor(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
+                             const Deviations& repeats);
 
 // The weight of a bin of each kind. `floor`: of repeats or noise. All 1 if no kind has a gap.
 std::vector<double> kind_weights(const KindSquares& before, const KindSquares& floor);

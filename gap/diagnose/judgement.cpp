@@ -27,7 +27,7 @@ bool depends_on_others(Doubt doubt) {
   return doubt == Doubt::negligible || doubt == Doubt::little_explained || is_misfit_of_kinds(doubt);
 }
 
-// Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
+// Shares of the stage's whole gap, without and with errors of the description's numbers in both models.
 bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettings& settings) {
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
 }

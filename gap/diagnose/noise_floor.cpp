@@ -146,9 +146,8 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
                        std::span<const double> stated) {
   // deviations between repeats, the bins that several of them have, and the samples of a full bin
   const std::size_t channels = diagnosis_channels().size();
-  const auto deviations = deviations_from_repeats(features, residuals, repeats);
+  const auto [deviations, shared] = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
-  const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
   NoiseFloor floor{std::vector<double>(channels, 0), std::vector<VectorXd>(features.size()),
                    std::vector<Whitener>(features.size()), false};
   floor.noise_of_bin = floor.sigma_of_bin;
@@ -212,14 +211,12 @@ VectorXd root_of_squares(const VectorXd& a, const VectorXd& b) {
   return (a.array().square() + b.array().square()).sqrt();
 }
 
-double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>& features,
-                      const std::vector<VectorXd>& deviations, const std::vector<std::vector<std::size_t>>& repeats) {
-  const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
+double rms_of_repeats(const NoiseFloor& floor, const Deviations& deviations) {
   double sum = 0, count = 0;
-  for (std::size_t r = 0; r < deviations.size(); ++r) {
-    if (deviations[r].size() == 0) continue;
-    sum += floor.whiteners[r](deviations[r]).squaredNorm();
-    count += static_cast<double>(std::ranges::count(shared[r], true));
+  for (std::size_t r = 0; r < deviations.of_runs.size(); ++r) {
+    if (deviations.of_runs[r].size() == 0) continue;
+    sum += floor.whiteners[r](deviations.of_runs[r]).squaredNorm();
+    count += static_cast<double>(std::ranges::count(deviations.shared[r], true));
   }
   return count > 0 ? std::sqrt(sum / count) : 1;
 }

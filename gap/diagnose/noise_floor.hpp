@@ -90,9 +90,7 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
 Eigen::VectorXd root_of_squares(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
 // Whitened rms of the deviations between repeats, over bins that at least two of them have; 1 without repeats.
-double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>& features,
-                      const std::vector<Eigen::VectorXd>& deviations,
-                      const std::vector<std::vector<std::size_t>>& repeats);
+double rms_of_repeats(const NoiseFloor& floor, const Deviations& deviations);
 
 // The same noise and ways with the open shapes of another model; roughness is the larger one of both.
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open);

@@ -62,6 +62,10 @@ std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const candi
   return shifts;
 }
 
+bool share_a_key(const candidates::Candidate& a, const candidates::Candidate& b) {
+  return std::ranges::any_of(a.keys, [&](const std::string& key) { return std::ranges::count(b.keys, key) > 0; });
+}
+
 // The principal directions of the shifts of all numbers. `shifts`: for each group, one column per number, for a
 // relative error of 1.
 std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<MatrixXd> shifts) {
@@ -90,7 +94,8 @@ std::vector<std::size_t> numbers_but(std::span<const candidates::Candidate> cand
                                      std::span<const std::size_t> possible, std::span<const std::size_t> valued) {
   const auto has_value = [&](std::size_t c) {
     return std::ranges::any_of(valued, [&](std::size_t other) {
-      return other == c || candidates::is_part_of(candidates[c], candidates[other]);
+      return other == c || candidates::is_part_of(candidates[c], candidates[other]) ||
+             (candidates[other].is_relative && share_a_key(candidates[c], candidates[other]));
     });
   };
   std::vector<std::size_t> numbers;

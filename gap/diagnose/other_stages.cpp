@@ -133,10 +133,13 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
 
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options) {
+  // what was refuted once stays refuted: a stage without it would find it again
+  std::vector<std::vector<RefutedElsewhere>> refuted(stages.size());
   for (int round = 0; round < kMostHearings; ++round)
     for (std::size_t s = 0; s < stages.size(); ++s) {
-      const Elsewhere elsewhere{named_elsewhere(stages, s),
-                                refuted_elsewhere(stages, s, prepared, predictor, options.decision)};
+      const std::vector<RefutedElsewhere> more = refuted_elsewhere(stages, s, prepared, predictor, options.decision);
+      refuted[s].insert(refuted[s].end(), more.begin(), more.end());
+      const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s]};
       if (concerns(stages[s].decision, prepared[s].candidates, elsewhere))
         stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
     }

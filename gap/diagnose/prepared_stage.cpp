@@ -76,7 +76,10 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
   NoiseFloor& floor = stage.nominal.floor;
   std::vector<OpenShapes> open = open_around(stage, predictor, {});
   if (has_baseline(features)) add_other_ways(open, features, predictor.nominal(input.passage));
-  floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open, input.stated_noise);
+  // a sensor's feature is its difference from the body's motion, whose noise nothing states
+  const bool as_stated = input.passage != Passage::body_to_sensor;
+  floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open,
+                      as_stated ? std::span<const double>(input.stated_noise) : std::span<const double>());
   stage.nominal.data = data_in(stage, floor);
 
   // a first look at all candidates; errors of the description's numbers are the same in a baseline

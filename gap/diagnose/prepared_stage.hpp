@@ -18,7 +18,7 @@ struct StageInput {
   const std::vector<StageFeatures>* features;
   const std::vector<std::vector<std::size_t>>* repeats;                // repeats_of()
   const std::vector<std::vector<std::size_t>>* same_command_sequence;  // same_command_sequence_of()
-  std::vector<double> stated_noise;  // for each of diagnosis_channels(), 0: not stated
+  std::vector<double> stated_noise;  // for each of diagnosis_channels(), 0: not stated; of one sample of that channel
 };
 
 // A stage with all simulations that precede its decision.

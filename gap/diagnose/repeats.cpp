@@ -145,14 +145,13 @@ std::size_t representative(const Observations& observations, const std::vector<s
   return sorted[sorted.size() / 2];
 }
 
-std::vector<VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& features,
-                                              const std::vector<VectorXd>& residuals,
-                                              const std::vector<std::vector<std::size_t>>& repeats) {
+Deviations deviations_from_repeats(const std::vector<StageFeatures>& features, const std::vector<VectorXd>& residuals,
+                                   const std::vector<std::vector<std::size_t>>& repeats) {
   struct Sum {
     double value = 0;
     int count = 0;
   };
-  std::vector<VectorXd> result(residuals.size());
+  Deviations result{std::vector<VectorXd>(residuals.size()), shared_bins(features, repeats)};
   for (const std::vector<std::size_t>& group : repeats) {
     if (group.size() < 2) continue;
     // sums over the group's runs by channel and span
@@ -164,11 +163,11 @@ std::vector<VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& 
     };
 
     // x - mean of n has the variance (n - 1) / n of one run: scaled by sqrt(n / (n - 1))
-    for (const std::size_t r : group) result[r] = VectorXd::Zero(residuals[r].size());
+    for (const std::size_t r : group) result.of_runs[r] = VectorXd::Zero(residuals[r].size());
     each_bin([&](std::size_t r, Index b, Sum& sum) { sum.value += residuals[r][b], ++sum.count; });
     each_bin([&](std::size_t r, Index b, Sum& sum) {
       if (sum.count > 1)
-        result[r][b] = (residuals[r][b] - sum.value / sum.count) * std::sqrt(sum.count / (sum.count - 1.0));
+        result.of_runs[r][b] = (residuals[r][b] - sum.value / sum.count) * std::sqrt(sum.count / (sum.count - 1.0));
     });
   }
   return result;

@@ -24,11 +24,14 @@ std::vector<std::vector<std::size_t>> same_command_sequence_of(const Observation
 // The run of a group with the median duration.
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group);
 
-// Deviation of each run from the mean of its repeats, by bins at the same time, scaled to the variance of one run.
-// Empty for a run without repeats; 0 in bins that one repeat alone has.
-std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& features,
-                                                     const std::vector<Eigen::VectorXd>& residuals,
-                                                     const std::vector<std::vector<std::size_t>>& repeats);
+// Deviations of runs from the mean of their repeats, by bins at the same time, scaled to the variance of one run.
+struct Deviations {
+  std::vector<Eigen::VectorXd> of_runs;   // empty for a run without repeats; 0 in bins that are not shared
+  std::vector<std::vector<bool>> shared;  // shared_bins(): the other bins say nothing of repeats
+};
+Deviations deviations_from_repeats(const std::vector<StageFeatures>& features,
+                                   const std::vector<Eigen::VectorXd>& residuals,
+                                   const std::vector<std::vector<std::size_t>>& repeats);
 
 // For each run, which of its bins at least one of its repeats also has.
 std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& features,

@@ -38,15 +38,18 @@ struct RobotFile {
 };
 RobotFile robot_file(const Diagnosis& diagnosis);
 
+// The runs of the page, which the caller may write beside the reports.
+inline constexpr const char* kCurvesFile = "curves.mcap";
+
 // Throws std::runtime_error if reports in `out` would overwrite their inputs, i.e. a dataset or the description, or a
 // robot file that no diagnosis wrote. Call this before long calculations.
 void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset,
                         const DiagnosisOptions& options);
 
 // Writes report.json, report.html and the robot's file, if any, atomically into `folder`; returns the path of the page.
-// Removes robot files of an earlier diagnosis that this one does not write. If this one was interrupted, keeps them and
-// the reports of a finished one: then writes report.partial.json and report.partial.html. Throws std::runtime_error on
-// failure.
+// Removes robot files and curves (kCurvesFile) of an earlier diagnosis that this one does not write. If this one was
+// interrupted, keeps them and the reports of a finished one: then writes report.partial.json and report.partial.html.
+// Throws std::runtime_error on failure.
 std::filesystem::path write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
 
 }  // namespace kenaf::gap::diagnose

@@ -69,11 +69,13 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
     runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));
     return folder / kPartialPage;
   }
+  const bool was_of_a_diagnosis = fs::exists(folder / kReport);
   runs::write_whole_file(folder / kPage, diagnosis_html(d, folder));
   const RobotFile robot = robot_file(d);
   if (!robot.name.empty()) runs::write_whole_file(folder / robot.name, robot.text);
   for (const char* other : kRobotFiles)  // of an earlier diagnosis, which would contradict this one
     if (d.interrupted.empty() && other != robot.name) fs::remove(folder / other, error);
+  if (d.interrupted.empty() && was_of_a_diagnosis) fs::remove(folder / kCurvesFile, error);
   runs::write_whole_file(folder / kReport, diagnosis_json(d));
   for (const char* partial : {kPartialPage, kPartialReport}) fs::remove(folder / partial, error);
   return folder / kPage;

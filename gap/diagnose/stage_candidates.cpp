@@ -45,7 +45,10 @@ std::vector<std::size_t> candidates_of(Passage passage, std::span<const candidat
 
 physics::RobotDescription with_settings(physics::RobotDescription robot,
                                         std::span<const candidates::Candidate> candidates, const Settings& settings) {
-  for (const Setting& setting : settings) candidates[setting.candidate].set(robot, setting.value);
+  for (const bool relative : {false, true})
+    for (const Setting& setting : settings)
+      if (candidates[setting.candidate].is_relative == relative)
+        candidates[setting.candidate].set(robot, setting.value);
   return robot;
 }
 

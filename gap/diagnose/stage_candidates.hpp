@@ -16,7 +16,7 @@ namespace kenaf::gap::diagnose {
 std::vector<std::size_t> candidates_of(Passage passage, std::span<const candidates::Candidate> candidates,
                                        bool drives_measured);
 
-// The nominal robot with candidates at these values.
+// The nominal robot with candidates at these values, in whatever order they are listed.
 physics::RobotDescription with_settings(physics::RobotDescription robot,
                                         std::span<const candidates::Candidate> candidates, const Settings& settings);
 

@@ -113,7 +113,7 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
 
   // the folds
   const unsigned threads = options.decision.search.threads;
-  const Folds by_manoeuvre = folds_by_manoeuvre(*input.observations);
+  const Folds by_manoeuvre = folds_by_manoeuvre(*input.observations, *input.repeats);
   Folds by_repeat = folds_by_repeat(*input.repeats);
   // an effect that one run alone shows can only be held out by halves
   if (!best.places.empty())
@@ -123,9 +123,9 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
   if (!best.places.empty())
     stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
   // around the model: the nominal robot may fall in only one of two repeats where the real one does not
-  std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_command_sequence);
-  for (std::size_t r = 0; r < spread.size(); ++r)
-    if (spread[r].size() > 0) spread[r].array() *= noise_of_difference(features[r]).array();
+  Deviations spread = deviations_from_repeats(features, stage.left, *input.same_command_sequence);
+  for (std::size_t r = 0; r < features.size(); ++r)
+    if (spread.of_runs[r].size() > 0) spread.of_runs[r].array() *= noise_of_difference(features[r]).array();
 
   // the gap with repeats held out, and with manoeuvres held out if that differs
   stage.gap = measure_gap(view, stage.left, spread, options.seed);
@@ -202,8 +202,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     result.data = data_in(prepared, result.floor);
     return result;
   };
-  const std::vector<VectorXd> deviations =
-      deviations_from_repeats(features, stage.residuals, *input.same_command_sequence);
+  const Deviations deviations = deviations_from_repeats(features, stage.residuals, *input.same_command_sequence);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};
   stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);

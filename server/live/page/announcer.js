@@ -1,10 +1,11 @@
-// Words for who does not see the page. What changes by its figures alone, such as an age, is said once.
+// Words for who does not see the page. What changes by its figures alone, such as an age, is said once; `again` says it
+// even so.
 const SAID_MS = 10000;   // after that it need not be found any more
 
 export function createAnnouncer() {
   const place = document.getElementById("said");
   let last = "";
-  return (words) => {
+  const announce = (words) => {
     const sense = words.replace(/[0-9.]+/g, "");
     if (sense === last) return;
     last = sense;
@@ -14,4 +15,9 @@ export function createAnnouncer() {
     place.append(said);
     setTimeout(() => said.remove(), SAID_MS);
   };
+  announce.again = (words) => {
+    last = "";
+    announce(words);
+  };
+  return announce;
 }

@@ -62,8 +62,7 @@ export function createMeasuring(stage, pointing, letGoOfKeys, words) {
         done = false;
       }
       show(p);
-      announce("");   // said again, though only its figures differ
-      announce(words.textContent);
+      announce.again(words.textContent);
     },
     ended() {
       parent.visible = false;

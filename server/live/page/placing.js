@@ -79,8 +79,7 @@ export function createPlacing(stage, world, pointing, driving, words) {
     show();
     words.textContent = "Click where it is to stand, or arrows and Enter; comma, full stop: turn. Enter alone: at a free start. Esc: cancel.";
     words.hidden = false;
-    announce("");
-    announce(words.textContent);
+    announce.again(words.textContent);
     document.getElementById("place").setAttribute("aria-pressed", "true");
     return true;
   };

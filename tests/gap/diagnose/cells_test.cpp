@@ -78,5 +78,15 @@ TEST_CASE("Repeats that differ as the floor says inflate nothing, a second of wa
   std::normal_distribution<double> normal;
   for (Eigen::Index i = 0; i < noise.size(); i += 4) noise.segment(i, 4).array() += normal(random);
   CHECK(inflation(noise) == Approx(5).epsilon(0.22));
-  CHECK(inflation_from_repeats(world.features, world.floor(), std::vector<Eigen::VectorXd>(world.runs()), 1) == 1);
+  const Deviations none{std::vector<Eigen::VectorXd>(world.runs()), std::vector<std::vector<bool>>(world.runs())};
+  CHECK(inflation_from_repeats(world.features, world.floor(), none, 1) == 1);
+  // the same where three quarters of each run are in no repeat
+  Deviations quarter = deviations_from_repeats(world.features, world.by_run(noise), world.repeats);
+  for (std::size_t r = 0; r < quarter.of_runs.size(); ++r)
+    for (std::size_t b = 0; b < quarter.shared[r].size(); ++b)
+      if (world.features[r].bins[b].span >= 25) {
+        quarter.shared[r][b] = false;
+        quarter.of_runs[r][static_cast<Eigen::Index>(b)] = 0;
+      }
+  CHECK(inflation_from_repeats(world.features, world.floor(), quarter, 1) == Approx(5).epsilon(0.44));
 }

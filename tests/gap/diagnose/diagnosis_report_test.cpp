@@ -272,6 +272,15 @@ TEST_CASE("A robot's file of an earlier diagnosis goes where this one does not w
   CHECK(files(made_without_gap()) == std::pair{false, false});
 }
 
+TEST_CASE("Curves of an earlier diagnosis go with its reports, another program's file of that name stays") {
+  const TemporaryFolder folder;
+  test::write_file(folder / kCurvesFile, "another program's");
+  write_diagnosis(undrawn(made_diagnosis()), folder.path());
+  CHECK(std::filesystem::exists(folder / kCurvesFile));
+  write_diagnosis(undrawn(made_unknown()), folder.path());
+  CHECK_FALSE(std::filesystem::exists(folder / kCurvesFile));
+}
+
 TEST_CASE("A diagnosis that was interrupted names nothing, and leaves a robot.toml of one before as it is") {
   const TemporaryFolder folder;
   test::write_file(folder / "robot.toml", "mine");

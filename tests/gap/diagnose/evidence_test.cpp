@@ -62,15 +62,33 @@ TEST_CASE("By manoeuvre all repeats are held out together") {
     observations.runs.push_back({});
     observations.runs.back().manoeuvre = name;
   }
-  CHECK(folds_by_manoeuvre(observations) == Folds{{0, 2}, {1, 4}, {3}});
+  CHECK(folds_by_manoeuvre(observations, {{0, 2}, {1}, {3}, {4}}) == Folds{{0, 2}, {1, 4}, {3}});
+  // names that tell nothing apart: by commands
+  for (Observation& run : observations.runs) run.manoeuvre = "drive";
+  CHECK(folds_by_manoeuvre(observations, {{0, 2}, {1, 4}, {3}}) == Folds{{0, 2}, {1, 4}, {3}});
+  observations.runs[3].manoeuvre = "square";
+  for (const std::size_t run : {0, 1, 2, 4}) observations.runs[run].manoeuvre = "";
+  CHECK(folds_by_manoeuvre(observations, {{0, 2}, {1, 4}, {3}}) == Folds{{0, 2}, {1, 4}, {3}});
 }
+
+namespace {
+// Deviations of repeats in all bins.
+Deviations everywhere(std::vector<Eigen::VectorXd> of_runs) {
+  Deviations deviations{std::move(of_runs), {}};
+  for (const Eigen::VectorXd& run : deviations.of_runs)
+    deviations.shared.emplace_back(static_cast<std::size_t>(run.size()), true);
+  return deviations;
+}
+Deviations no_repeats(const LinearWorld& of) {
+  return everywhere(std::vector<Eigen::VectorXd>(of.runs()));
+}
+}  // namespace
 
 TEST_CASE("How much of a gap is gone, by hand") {
   // in all bins 5, then 3; the noise is 1
   const Whole five = Whole::Constant(world().bins(), 5);
   const Measured measured(world(), five);
-  const std::vector<Eigen::VectorXd> none(world().runs());
-  const GapMeasure gap = measure_gap(measured.view, world().by_run(0.6 * five), none, 1);
+  const GapMeasure gap = measure_gap(measured.view, world().by_run(0.6 * five), no_repeats(world()), 1);
   CHECK(gap.before == Approx(5));
   CHECK(gap.after == Approx(3));
   CHECK(gap.floor == 1);
@@ -80,7 +98,8 @@ TEST_CASE("How much of a gap is gone, by hand") {
   CHECK(gap.explains.from == Approx(gap.explains.value));
   CHECK(gap.explains.to == Approx(gap.explains.value));
   // repeats that differ by 2 leave 5^2 - 2^2 = 21 to explain
-  const GapMeasure with_repeats = measure_gap(measured.view, world().by_run(0.6 * five), world().by_run(0.4 * five), 1);
+  const GapMeasure with_repeats =
+      measure_gap(measured.view, world().by_run(0.6 * five), everywhere(world().by_run(0.4 * five)), 1);
   CHECK(with_repeats.floor == Approx(2));
   CHECK(with_repeats.explains.value == Approx(16.0 / 21));
 }
@@ -88,8 +107,7 @@ TEST_CASE("How much of a gap is gone, by hand") {
 TEST_CASE("No share of a gap is above 1, however little is left") {
   const Whole five = Whole::Constant(world().bins(), 5);
   const Measured measured(world(), five);
-  const GapMeasure gap =
-      measure_gap(measured.view, world().by_run(0 * five), std::vector<Eigen::VectorXd>(world().runs()), 1);
+  const GapMeasure gap = measure_gap(measured.view, world().by_run(0 * five), no_repeats(world()), 1);
   for (const Interval& share : {gap.shrink, gap.explains}) {
     CHECK(share.value == 1);
     CHECK(share.to == 1);
@@ -111,10 +129,29 @@ TEST_CASE("The interval of a share has what manoeuvres differ by") {
   Whole left = Whole::Constant(four.bins(), 5);
   const Measured measured(four, left);
   left.head(2 * four.bins_of_manoeuvre()).setConstant(1);
-  const GapMeasure gap = measure_gap(measured.view, four.by_run(left), std::vector<Eigen::VectorXd>(four.runs()), 1);
+  const GapMeasure gap = measure_gap(measured.view, four.by_run(left), no_repeats(four), 1);
   CHECK(gap.explains.value == Approx(0.5));
   CHECK(gap.explains.from == Approx(0));
   CHECK(gap.explains.to == Approx(1));
+}
+
+TEST_CASE("A share of a single manoeuvre has no interval, as nothing shows how manoeuvres differ") {
+  const LinearWorld one({1, 3, 3});
+  const Measured measured(one, Whole::Constant(one.bins(), 5));
+  const GapMeasure gap = measure_gap(measured.view, one.by_run(Whole::Constant(one.bins(), 3)), no_repeats(one), 1);
+  CHECK(gap.explains.value == Approx(16.0 / 24));
+  CHECK(std::isnan(gap.explains.from));
+  CHECK(std::isnan(gap.explains.to));
+}
+
+TEST_CASE("Without repeats, the floor of a difference from one earlier run has the noise of both") {
+  LinearWorld against({4, 1, 3});
+  for (StageFeatures& run : against.features) run.baseline_runs = Eigen::VectorXd::Ones(std::ssize(run.bins));
+  const Measured measured(against, Whole::Constant(against.bins(), 5));
+  const GapMeasure gap =
+      measure_gap(measured.view, against.by_run(Whole::Constant(against.bins(), 3)), no_repeats(against), 1);
+  CHECK(gap.floor == Approx(std::sqrt(2.0)));
+  CHECK(gap.explains.value == Approx(16.0 / 23));  // (25 - 9) / (25 - 2)
 }
 
 TEST_CASE("The true effect takes a gap away on runs it was not fitted to, another one nothing") {
@@ -165,6 +202,10 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
   REQUIRE(shares.sets.size() == 1);
   CHECK(shares.sets[0].places == std::vector<std::size_t>{0, 1});
   CHECK(shares.sets[0].share.of_stage == 1);  // without both nothing is explained
+  // half of the runs show half of the squared shifts: of each, and of both together
+  CHECK(shares.effects[0].shown_by_others == Approx(900.0 / 2));
+  CHECK(shares.effects[1].shown_by_others == Approx(1600.0 / 2));
+  CHECK(shares.sets[0].share.shown_by_others == Approx(2500.0 / 2));
 
   // half of what x lacks is explained, and all of the voltage: each in its own channels, whatever the other one's size
   const HeldOutShares two = shares_of(0.5 * effects[0] + 0.4 * effects[1] + 0.9 * effects[2], {0, 2});

@@ -209,7 +209,7 @@ TEST_CASE("What repeats differ by is measured over the bins that more than one o
   for (const Eigen::Index bins : {4, 2}) floor.whiteners.emplace_back(VectorXd::Ones(bins), MatrixXd(bins, 0));
   const std::vector<VectorXd> residuals{VectorXd::Constant(4, 6), VectorXd::Zero(2)};
   const auto rms = [&](const std::vector<std::vector<std::size_t>>& repeats) {
-    return rms_of_repeats(floor, {whole, half}, deviations_from_repeats({whole, half}, residuals, repeats), repeats);
+    return rms_of_repeats(floor, deviations_from_repeats({whole, half}, residuals, repeats));
   };
   CHECK(rms({{0, 1}}) == Approx(3 * std::sqrt(2.0)));
   CHECK(rms({{0}, {1}}) == 1);

@@ -124,12 +124,12 @@ TEST_CASE("Deviations are from the mean of the repeats, with the variance of one
   const std::vector<Eigen::VectorXd> residuals{Eigen::Vector2d(1, 5), Eigen::Vector2d(3, 5), Eigen::Vector2d(7, 7)};
   // of 1 and 3: mean 2, deviations -1 and 1, their variance 1; that of one run is n / (n - 1) = 2 times it
   const auto of_two = deviations_from_repeats(features, residuals, {{0, 1}, {2}});
-  CHECK(of_two[0][0] == Approx(-std::sqrt(2.0)));
-  CHECK(of_two[1][0] == Approx(std::sqrt(2.0)));
-  CHECK(of_two[1][1] == 0);
-  CHECK(of_two[2].size() == 0);
+  CHECK(of_two.of_runs[0][0] == Approx(-std::sqrt(2.0)));
+  CHECK(of_two.of_runs[1][0] == Approx(std::sqrt(2.0)));
+  CHECK(of_two.of_runs[1][1] == 0);
+  CHECK(of_two.of_runs[2].size() == 0);
   const auto of_three = deviations_from_repeats(features, residuals, {{0, 1, 2}});
-  CHECK(of_three[2][0] == Approx((7 - 11.0 / 3) * std::sqrt(1.5)));
+  CHECK(of_three.of_runs[2][0] == Approx((7 - 11.0 / 3) * std::sqrt(1.5)));
 }
 
 TEST_CASE("Deviations of noise have the noise's variance, for any number of repeats") {
@@ -145,7 +145,7 @@ TEST_CASE("Deviations of noise have the noise's variance, for any number of repe
       residuals.push_back(Eigen::VectorXd::NullaryExpr(1000, [&] { return normal(random); }));
       group[0].push_back(r);
     }
-    for (const Eigen::VectorXd& run : deviations_from_repeats(features, residuals, group)) {
+    for (const Eigen::VectorXd& run : deviations_from_repeats(features, residuals, group).of_runs) {
       square += run.squaredNorm();
       bins += static_cast<double>(run.size());
     }
@@ -157,8 +157,9 @@ TEST_CASE("Deviations of noise have the noise's variance, for any number of repe
 TEST_CASE("Where one repeat alone goes on there is no deviation") {
   const auto deviations =
       deviations_from_repeats(lasting({0.5, 1}), {Eigen::Vector2d(1, 1), Eigen::Vector4d(3, 3, 9, 9)}, {{0, 1}});
-  CHECK(deviations[1][0] == Approx(std::sqrt(2.0)));
-  CHECK(deviations[1][3] == 0);
+  CHECK(deviations.of_runs[1][0] == Approx(std::sqrt(2.0)));
+  CHECK(deviations.of_runs[1][3] == 0);
+  CHECK(deviations.shared[1] == std::vector<bool>{true, true, false, false});
 }
 
 TEST_CASE("A group is represented by the run of middle duration") {
