@@ -24,7 +24,7 @@ export function describe({ robot, mine, holder, lost, world, isHeard, moves, loo
   if (mine && lookingBack) return { state: "paused", text: `${name} stands: nothing drives while you look back` };
   if (mine && pointing) return { state: "paused", text: `${name} stands: you point at a place now. Esc ends that` };
   if (mine && moves) return { state: "driving", text: `Driving ${name}` };
-  if (mine) return { state: "held", text: `${name} is at rest: hold a key or the stick to drive` };
+  if (mine) return { state: "held", text: `${name} is at rest: hold W, A, S, D or the stick to drive` };
   const paused = world.paused ? `; the world is paused by ${whoPaused(world)}` : "";
   if (holder) return { state: "other", text: `Another operator has ${name}: take over once that one lets go${paused}` };
   if (lost) return { state: "none", text: `The link was lost, so the server let go of ${lost}. Take over to drive on${paused}` };

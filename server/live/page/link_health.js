@@ -22,13 +22,13 @@ export function alarms({ refusal, isHeard, newestAge_ms, roundTrip_ms, isSlow, h
   }
   const found = [];
   if (isSlow) {
-    found.push(`Slow link: ${seconds(roundTrip_ms)} s there and back. What you see is old, and the robot obeys late`);
+    found.push(`Slow link: ${seconds(roundTrip_ms)} s there and back. What you see is old${mine ? ", and the robot obeys late" : ""}`);
   }
   if (mine && heldUp_ms) {
     found.push(`Slow browser: this page stops for ${seconds(heldUp_ms)} s at a time, and ${mine.about.name} stands meanwhile`);
   }
   if (world.paused && mine && !isPausedHere(world)) found.push(`Paused by ${whoPaused(world)}: ${mine.about.name} does not move`);
-  if (!world.paused && oldestPicture_ms >= OLD_PICTURE_MS) found.push(`The cameras' pictures are up to ${seconds(oldestPicture_ms)} s old`);
+  if (!isSlow && !world.paused && oldestPicture_ms >= OLD_PICTURE_MS) found.push(`The cameras' pictures are up to ${seconds(oldestPicture_ms)} s old`);
   return found;
 }
 
@@ -43,7 +43,7 @@ export function createLinkHealth(world, link, mine, oldestPicture_ms) {
     if (!isHeard) return "no link";
     const others = world.viewers > 1 ? ` \u00b7 ${world.viewers} viewers` : "";
     const dropped = link.dropped ? ` \u00b7 ${link.dropped} dropped` : "";
-    return `round trip ${(link.roundTrip_ms() ?? 0).toFixed(0)} ms${dropped}${others}`;
+    return `round trip ${(link.steadyRoundTrip_ms() || link.roundTrip_ms() || 0).toFixed(0)} ms${dropped}${others}`;
   }
 
   function update() {

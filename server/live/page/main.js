@@ -50,9 +50,10 @@ const link = connect({
   },
 });
 const driving = createDriving(world, link);
-const timeControls = createTimeControls(world, link, driving.ask);
+const timeControls = createTimeControls(world, link, driving.ask, (words) => health.refused(words));
 createHelp(driving.letGoOfKeys);
-const panels = createPanels({ world, driving, view: () => view, shot: (camera) => pictures.shot(camera), complain: (words) => health.refused(words) });
+const panels = createPanels({ world, driving, view: () => view, shot: (camera) => pictures.shot(camera), complain: (words) => health.refused(words),
+                              began: timeControls.began });
 const pictures = createPictures(world, link, chosen, panels.bigView);
 const cameraHand = createCameraHand(link, driving);
 const health = createLinkHealth(world, link, driving.holding, pictures.oldest_ms);

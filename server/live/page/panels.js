@@ -17,8 +17,9 @@ async function pngOf(jpeg) {
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// `view()`: of the world in 3D, or null. `shot(camera)`: a promise of its newest picture (pictures.js). `complain` is called with what is wrong, in words.
-export function createPanels({ world, driving, view, shot, complain }) {
+// `view()`: of the world in 3D, or null. `shot(camera)`: a promise of its newest picture (pictures.js). `complain` is called with what is wrong, in words;
+// `began` when time began anew.
+export function createPanels({ world, driving, view, shot, complain, began }) {
   const history = createHistory(), chosen = () => driving.chosen;
   let bodies = "";
 
@@ -67,7 +68,10 @@ export function createPanels({ world, driving, view, shot, complain }) {
     bigView,
     update() {
       const anew = history.take(world);
-      if (anew) driving.letGoOfKeys();   // a reset: where keys drove to, the robot is no more
+      if (anew) {
+        driving.letGoOfKeys();   // a reset: where keys drove to, the robot is no more
+        began();
+      }
       past.update(anew);
       show();
     },

@@ -25,6 +25,42 @@ std::string says(const std::string& id, const std::string& words) {
 
 }  // namespace
 
+TEST_CASE("In a browser: who resets the world reads whose robots that moves, and the others read that it was reset") {
+  Desk desk;
+  desk.place();
+  // one's own robot alone: nobody else is named
+  desk.browser.click("#reset");
+  desk.browser.wait_for("document.getElementById('question').open");
+  CHECK(text_of(desk.browser, "question-words").starts_with("Reset the whole world? All robots go back"));
+  desk.browser.click("#question-no");
+
+  // another operator's: named
+  WebClient other(desk.world.port());
+  REQUIRE(other.open_websocket());
+  desk.browser.click("#let-go");
+  desk.state_is("none");
+  other.send_text(R"({"type":"take","robot":1})");
+  desk.state_is("other");
+  desk.browser.click("#reset");
+  desk.browser.wait_for("document.getElementById('question').open");
+  CHECK_THAT(std::string(text_of(desk.browser, "question-words")),
+             Catch::Contains("Another operator has Manual1. All robots go back"));
+
+  // reset from here it is no news, by another page it is
+  desk.browser.evaluate(
+      "window.began = [], new MutationObserver(() => began.push(document.getElementById('notice').textContent))"
+      ".observe(document.getElementById('notice'), { childList: true, characterData: true, subtree: true }), 0");
+  desk.browser.wait_for("!document.getElementById('question-yes').disabled");
+  desk.browser.evaluate("window.before_s = parseFloat(document.getElementById('time').textContent), 0");
+  desk.browser.click("#question-yes");
+  desk.browser.wait_for("parseFloat(document.getElementById('time').textContent) < before_s");
+  CHECK(desk.browser.evaluate("began.length") == 0);
+  desk.browser.wait_for("parseFloat(document.getElementById('time').textContent) > 0.1");
+  other.send_text(R"({"type":"reset"})");
+  desk.browser.wait_for(says("notice", "The world was reset, by another page or a program"));
+  CHECK(desk.browser.complaints().empty());
+}
+
 TEST_CASE("In a browser: a world that is paused says by whom, and never that it drives") {
   Desk desk;
   desk.place();
