@@ -244,9 +244,9 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   if (const std::vector<std::size_t> tried = places_to_try(stage.decision); tried != places_to_keep(stage.decision))
     with_alone(tried, names + 1);
 
-  // only effects with a name and their look-alikes, unless the named ones need the others to be significant
-  if (const std::size_t named = places_with_name(stage.decision).size(); named > 0)
-    with_alone(places_to_keep(stage.decision), named);
+  // only effects with a name and their look-alikes: a name that holds beside an effect without one alone may be half of
+  // what the two do together, as a gain of both tracks and an asymmetry that cancels it on one of them
+  if (!places_with_name(stage.decision).empty()) with_alone(places_to_keep(stage.decision), 0);
   doubt_unless_simulated(stage.decision, stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value,
                          options.decision);
   const StageDecision& decision = stage.decision;
