@@ -92,8 +92,8 @@ std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::s
 std::vector<Manoeuvre> shipped_manoeuvres();
 
 // Replays a run's commands, from the pose, the flipper angles and the motion of its first rows on. An empty cell
-// repeats the command before it. Throws runs::RunFileError if the run has no command or no start, or lasts more than an
-// hour.
+// repeats the command before it. A run whose tracks were measured, but not x, y or yaw, starts at 0 of what is missing.
+// Throws runs::RunFileError if the run has no command, neither a start nor tracks, or lasts more than an hour.
 Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors);
 // The same with belts and flippers that turn as they were measured (rollout/measured_motion.hpp), so that commands and
 // drives do not influence the body. A track or flipper that was never measured follows its command through its drive;

@@ -17,10 +17,23 @@ std::optional<double> first_measured(Column column) {
   return found == column.end() ? std::nullopt : std::optional(*found);
 }
 
+bool measures_both_tracks(const runs::Run& run) {
+  return std::ranges::all_of(robot::kTrackNames, [&run](std::string_view track) {
+    return first_measured(run.column(fmt::format("track_{}_mps", track))) ||
+           first_measured(run.column(fmt::format("track_{}_m", track)));
+  });
+}
+
+// The first value of the pose. Of a robot that nothing saw the drives and the gyro can be compared wherever it stood:
+// it starts at 0. Without its tracks there is nothing left to compare.
 double at_start(const runs::Run& run, std::string_view name, const std::string& file) {
   const auto value = first_measured(run.column(name));
-  if (!value) throw runs::RunFileError(fmt::format("{}: has no {}; a replay starts where its run started", file, name));
-  return *value;
+  if (value) return *value;
+  if (measures_both_tracks(run)) return 0;
+  throw runs::RunFileError(
+      fmt::format("{}: has no {}, and its tracks were not measured either; a replay starts where its run started: add "
+                  "the pose by kenaf-gap merge",
+                  file, name));
 }
 
 // The first angles of all flippers, measured or else commanded; empty if one has neither.
@@ -38,7 +51,10 @@ std::optional<std::array<double, robot::kFlipperCount>> flippers_at_start(const 
 Manoeuvre replay(const runs::Run& run, const std::string& file) {
   const Column time = run.column("t_s");
   if (!(time.back() - time.front() <= kLongestManoeuvre_s))
-    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongestManoeuvre_s));
+    throw runs::RunFileError(
+        fmt::format("{}: lasts {:.0f} s, more than the {:.0f} s of the longest replay; cut the "
+                    "file into one for each drive",
+                    file, time.back() - time.front(), kLongestManoeuvre_s));
   const std::array<Column, robot::kTrackCount> tracks{run.column("cmd_track_left_mps"),
                                                       run.column("cmd_track_right_mps")};
 

@@ -66,6 +66,11 @@ std::map<std::string, double> read_noise(const TableReader& reader) {
   return noise;
 }
 
+bool is_dataset_file(const fs::path& path) {
+  std::error_code ignored;
+  return path.filename() == kFileName && fs::is_regular_file(path, ignored);
+}
+
 bool leaves_the_folder(const fs::path& file) {
   const fs::path normal = file.lexically_normal();
   return file.is_absolute() || normal.empty() || *normal.begin() == "..";
@@ -134,7 +139,15 @@ std::string as_toml_key(const std::string& key) {
 
 }  // namespace
 
+fs::path folder_of_dataset(const fs::path& path) {
+  if (!is_dataset_file(path)) return path;
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
 Dataset read_dataset(const fs::path& folder) {
+  if (is_dataset_file(folder))
+    throw RunFileError(folder.string() + ": is the file of a dataset; give its folder, " +
+                       folder_of_dataset(folder).string());
   if (fs::is_regular_file(folder))
     throw RunFileError(folder.string() + ": is a file, not the folder of a dataset; `kenaf-gap dataset " +
                        folder.filename().string() + " --manoeuvre NAME --out FOLDER` makes a dataset of a run");

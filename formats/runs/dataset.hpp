@@ -34,6 +34,9 @@ struct Dataset {
 // The file of a dataset's run number `index`, from 0: "run-007.csv".
 std::string numbered_run_file(std::size_t index);
 
+// The folder of a dataset that is named by its dataset.toml; any other path stays as it is.
+std::filesystem::path folder_of_dataset(const std::filesystem::path& path);
+
 // Reads `folder`/dataset.toml. Unknown keys are ignored. Throws RunFileError with file, line and column if the file is
 // missing, is no TOML or has another format, or `folder` is a file, a required key is missing or of another type, a
 // noise is no positive number, or there is no run, a run named twice or one outside of the folder.

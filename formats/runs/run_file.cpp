@@ -76,7 +76,10 @@ std::string separated_by(char separator) {
 
 void check_time(double time_s, double last_time_s, std::size_t column, const Place& place) {
   if (std::isnan(time_s)) fail(place, column, "the row has no time; every row needs its t_s");
-  if (time_s <= last_time_s) fail(place, column, "t_s does not increase from the row before");
+  if (time_s <= last_time_s)
+    fail(place, column,
+         "t_s does not increase from the row before: a duplicate stamp, a clock that was set back, or several runs in "
+         "one file; cut the file into one for each run, or make runs of it by kenaf-gap import");
 }
 
 // Reads a run from its text piece by piece, so that of a long file only the values are held in memory.

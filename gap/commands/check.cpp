@@ -11,10 +11,12 @@
 #include <system_error>
 
 #include "gap/commands/commands.hpp"
+#include "gap/logs/body_heading.hpp"
 #include "gap/logs/copies.hpp"
 #include "gap/logs/lifted_robot.hpp"
 #include "gap/logs/other_forms.hpp"
 #include "gap/logs/plausibility.hpp"
+#include "gap/logs/unknown_columns.hpp"
 
 namespace kenaf::gap::commands {
 namespace {
@@ -31,7 +33,9 @@ bool is_run_file(const std::filesystem::path& path) {
 }
 
 // Checks a dataset with one run in memory at a time, or one run of `robot`. Throws if something is refused.
-void check(const std::filesystem::path& path, const std::string& robot_of_file, const logs::RefusedRuns& refused_runs) {
+void check(const std::filesystem::path& asked, const std::string& robot_of_file,
+           const logs::RefusedRuns& refused_runs) {
+  const std::filesystem::path path = runs::folder_of_dataset(asked);
   const bool is_file = is_run_file(path);
   if (!is_file && !robot_of_file.empty())
     throw std::invalid_argument(path.string() + ": a dataset names its robot; --robot is for a run file");
@@ -52,7 +56,9 @@ void check(const std::filesystem::path& path, const std::string& robot_of_file, 
   logs::KnownRuns known_runs;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
+  logs::BodyHeading heading;
   logs::OtherForms forms;
+  logs::UnknownColumns unknown;
   const auto take = [&](const std::vector<logs::Finding>& findings) {
     print(findings);
     for (const logs::Finding& finding : findings)
@@ -61,21 +67,37 @@ void check(const std::filesystem::path& path, const std::string& robot_of_file, 
 
   // Each run by itself; copies even of runs with a fault.
   for (const runs::DatasetRun& entry : dataset.runs) {
-    const runs::Run run = runs::read_run(folder / entry.file);
-    columns.push_back(run.columns);
-    forms.look_at(run, entry.file);
-    if (const auto copy = known_runs.copy(run, entry.file)) take({*copy});
+    std::vector<logs::Finding> found;
+    const std::optional<runs::Run> run =
+        is_file ? std::optional(runs::read_run(path)) : logs::read_or_refuse(folder / entry.file, entry.file, found);
+    if (!run) {
+      take(found);
+      ++runs_refused;
+      continue;
+    }
+    columns.push_back(run->columns);
+    forms.look_at(*run, entry.file);
+    unknown.look_at(*run, entry.file);
+    if (const auto copy = known_runs.copy(*run, entry.file)) take({*copy});
     if (!entry.fault.empty()) continue;
-    std::vector<logs::Finding> found = logs::check_run(run, entry.file, &robot);
+    found = logs::check_run(*run, entry.file, &robot);
     held.take_off(found);
     take(found);
-    if (logs::any_refused(found)) ++runs_refused;
-    lifted.look_at(run, robot.track_gauge_m());
+    if (logs::any_refused(found))
+      ++runs_refused;
+    else
+      heading.look_at(*run);
+    lifted.look_at(*run, robot.track_gauge_m());
   }
 
   // Findings over all runs.
   take(forms.findings());
+  take(unknown.findings());
   take(held.findings());
+  if (const auto of_heading = heading.findings(); !of_heading.empty()) {
+    take(of_heading);
+    if (logs::any_refused(of_heading)) runs_refused = dataset.runs.size();
+  }
   if (const auto finding = lifted.finding()) take({*finding});
   take(logs::check_noise(dataset, columns));
 

@@ -10,7 +10,9 @@
 
 #include "formats/runs/whole_file.hpp"
 #include "gap/datasets/dataset_files.hpp"
+#include "gap/logs/body_heading.hpp"
 #include "gap/logs/other_forms.hpp"
+#include "gap/logs/unknown_columns.hpp"
 #include "gap/logs/wrapped_travel.hpp"
 #include "physics/world_description.hpp"
 #include "rollout/manoeuvre.hpp"
@@ -106,20 +108,31 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   const std::string asked_robot = request.robot.empty() ? "kenaf" : request.robot;
   const physics::RobotDescription robot =
       physics::load_robot(there ? runs::resolve_beside(request.out, there->robot, ".toml") : asked_robot);
+  logs::BodyHeading heading;
   logs::OtherForms forms;
+  logs::UnknownColumns unknown;
   for (const RecordedRun& run : request.runs) {
-    runs::Run recorded = runs::read_run(run.file);
+    const std::string file = run.file.string();
+    std::optional<runs::Run> recorded = logs::read_or_refuse(run.file, file, result.findings);
+    if (!recorded) continue;
     if (request.unwrap)
-      for (const std::string& done : logs::unwrap_travel(recorded))
-        result.changed.push_back(fmt::format("{}: {}", run.file.string(), done));
-    forms.look_at(recorded, run.file.string());
-    const std::vector<logs::Finding> findings = logs::check_run(recorded, run.file.string(), &robot);
+      for (const std::string& done : logs::unwrap_travel(*recorded))
+        result.changed.push_back(fmt::format("{}: {}", file, done));
+    forms.look_at(*recorded, file);
+    unknown.look_at(*recorded, file);
+    const std::vector<logs::Finding> findings = logs::check_run(*recorded, file, &robot);
     result.findings.insert(result.findings.end(), findings.begin(), findings.end());
+    if (!logs::any_refused(findings)) heading.look_at(*recorded);
     if (!logs::any_refused(findings) || request.refused_runs.unchecked)
       result.added.push_back(static_cast<std::size_t>(&run - request.runs.data()));
   }
   std::ranges::move(forms.findings(), std::back_inserter(result.findings));
-  result.refused = request.refused_runs.too_many(request.runs.size() - result.added.size(), request.runs.size());
+  std::ranges::move(unknown.findings(), std::back_inserter(result.findings));
+  const std::vector<logs::Finding> of_heading = heading.findings();
+  result.findings.insert(result.findings.end(), of_heading.begin(), of_heading.end());
+  result.refused = result.added.empty() ||
+                   request.refused_runs.too_many(request.runs.size() - result.added.size(), request.runs.size()) ||
+                   (logs::any_refused(of_heading) && !request.refused_runs.unchecked);
   if (result.refused) return result;
 
   // All worlds must load.

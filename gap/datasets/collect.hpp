@@ -31,15 +31,16 @@ struct CollectedDataset {
   bool extended = false;                // the dataset existed before
   std::vector<runs::DatasetRun> runs;   // those added, in the order requested
   std::vector<std::size_t> added;       // their places in the request: others were refused and left out
-  std::vector<logs::Finding> findings;  // of those; with file names as given
+  std::vector<logs::Finding> findings;  // of those and of all runs together; with file names as given
   std::vector<std::string> changed;     // what `unwrap` did
-  bool refused = false;                 // too many runs are refused: nothing was written
+  bool refused = false;                 // too many runs are refused, or all together: nothing was written
 };
 
 // Copies the runs into the folder `out` under their own names, with a number if a name is taken, and writes or extends
-// its dataset.toml, last. Existing files do not change, except for runs added at the end of dataset.toml. Throws
-// std::exception with words for the user, having written nothing, if a run cannot be read, `out` is neither empty nor a
-// dataset, the robot is not the dataset's, or no world is known.
+// its dataset.toml, last. Existing files do not change, except for runs added at the end of dataset.toml. A run that
+// cannot be read counts as refused, even if others are taken unchecked. Throws std::exception with words for the user,
+// having written nothing, if `out` is neither empty nor a dataset, the robot is not the dataset's, or no world is
+// known.
 CollectedDataset collect_dataset(const CollectRequest& request);
 
 }  // namespace kenaf::gap::datasets

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/logs/course.hpp"
@@ -14,6 +16,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 // 74 degrees: beyond it a rotation of the body changes roll and yaw by four times as much or more (chosen).
 constexpr double kUpright_rad = 1.3;
+constexpr double kLeastApart_m = 0.05;  // of the tracks, to tell how far they turn the body (chosen)
 
 // Rows in which the nose points up or down, by the latest measured pitch.
 std::vector<bool> upright_rows(const runs::Run& measured) {
@@ -22,6 +25,85 @@ std::vector<bool> upright_rows(const runs::Run& measured) {
   for (std::size_t i = 0; i < pitch_rad.size(); ++i)
     upright[i] = std::isnan(pitch_rad[i]) ? i > 0 && upright[i - 1] : std::abs(pitch_rad[i]) > kUpright_rad;
   return upright;
+}
+
+// How far the body turned between two times, by its gyro or else by its tracks.
+class MeasuredTurn {
+ public:
+  explicit MeasuredTurn(const runs::Run& run) {
+    const std::span<const double> time = run.column("t_s");
+    for (const double t_s : time) t_s_.push_back(t_s - time.front());
+    gyro_ = of_rate(run.column("gyro_z_radps"));
+    for (const char* unit : {"m", "mps"}) {
+      const auto left = run.column(std::string("track_left_") + unit),
+                 right = run.column(std::string("track_right_") + unit);
+      if (left.empty() || right.empty() || !belts_.t_s.empty()) continue;
+      std::vector<double> apart(left.size());
+      for (std::size_t i = 0; i < apart.size(); ++i) apart[i] = right[i] - left[i];
+      belts_ = unit == std::string("m")
+                   ? logs::course_of(t_s_, apart, logs::longest_gap_s(logs::median_step(t_s_, apart)))
+                   : of_rate(apart);
+    }
+  }
+
+  // Learns how far the body turns for each metre that the tracks go apart, from the steps of its yaw without a gap:
+  // least squares. The tracks must have gone apart at all.
+  void learn(std::span<const double> yaw_t_s, std::span<const double> yaw_rad, double longest_gap_s) {
+    double sum_aa = 0, sum_ab = 0, way_m = 0;
+    for (std::size_t i = 1; i < yaw_rad.size(); ++i) {
+      if (yaw_t_s[i] - yaw_t_s[i - 1] > longest_gap_s) continue;
+      const double apart_m = logs::value_at(belts_, yaw_t_s[i]) - logs::value_at(belts_, yaw_t_s[i - 1]);
+      if (std::isnan(apart_m)) continue;
+      sum_aa += apart_m * apart_m;
+      sum_ab += apart_m * robot::wrap_angle(yaw_rad[i] - yaw_rad[i - 1]);
+      way_m += std::abs(apart_m);
+    }
+    if (way_m > kLeastApart_m) radpm_ = sum_ab / sum_aa;
+  }
+
+  // Not a number where neither was measured all the while.
+  double between(double from_s, double to_s) const {
+    const double by_gyro = change(gyro_, from_s, to_s);
+    return std::isnan(by_gyro) ? radpm_ * change(belts_, from_s, to_s) : by_gyro;
+  }
+
+ private:
+  logs::Course of_rate(std::span<const double> rate) const {
+    return logs::course_of_rate(t_s_, rate, logs::longest_gap_s(logs::median_step(t_s_, rate)));
+  }
+
+  // Not a number over a gap of the course itself: what a rate was there is unknown.
+  static double change(const logs::Course& course, double from_s, double to_s) {
+    const auto first = std::ranges::lower_bound(course.t_s, from_s), last = std::ranges::lower_bound(course.t_s, to_s);
+    if (last == course.t_s.end()) return std::nan("");
+    for (auto sample = first; sample != last; ++sample)
+      if (*(sample + 1) - *sample > course.longest_gap_s) return std::nan("");
+    return logs::value_at(course, to_s) - logs::value_at(course, from_s);
+  }
+
+  std::vector<double> t_s_;  // from the run's start
+  logs::Course gyro_, belts_;
+  double radpm_ = std::nan("");
+};
+
+// Unwraps a measured yaw. Over a gap the shorter way need not be the one that was taken: there the whole turn is that
+// of the gyro, or else of the tracks, if they were measured.
+void unwrap_yaw(const runs::Run& run, std::span<const double> t_s, std::span<double> yaw_rad) {
+  const double longest_gap_s = logs::longest_gap_s(logs::median_step(t_s, yaw_rad));
+  robot::unwrap(yaw_rad);
+  std::optional<MeasuredTurn> turn;  // made if it is needed
+  double more_rad = 0;               // whole turns in the gaps before
+  for (std::size_t i = 1; i < yaw_rad.size(); ++i) {
+    if (t_s[i] - t_s[i - 1] > longest_gap_s) {
+      if (!turn) {
+        turn.emplace(run);
+        turn->learn(t_s, yaw_rad, longest_gap_s);
+      }
+      const double shorter_rad = yaw_rad[i] + more_rad - yaw_rad[i - 1], turned_rad = turn->between(t_s[i - 1], t_s[i]);
+      if (!std::isnan(turned_rad)) more_rad += kTurn * std::round((turned_rad - shorter_rad) / kTurn);
+    }
+    yaw_rad[i] += more_rad;
+  }
 }
 
 }  // namespace
@@ -45,7 +127,10 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     if (series.t_s.empty()) continue;
 
     // sums by span, in the order of time
-    if (channel.angle) robot::unwrap(series.value);
+    if (channel.column == "yaw_rad")
+      unwrap_yaw(measured, series.t_s, series.value);
+    else if (channel.angle)
+      robot::unwrap(series.value);
     series.interval_s = series.t_s.size() > 1 ? logs::median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
       // a time on a border belongs to the later span, despite rounding

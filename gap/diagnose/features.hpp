@@ -23,7 +23,9 @@ struct Bin {
 
 class FeatureMap {
  public:
-  // Bins of every measured channel except columns `left_out`, channel by channel, in the order of time.
+  // Bins of every measured channel except columns `left_out`, channel by channel, in the order of time. Yaw goes on
+  // over a gap by the whole turns of the gyro, or else of the tracks as far as they turn the body elsewhere in the run;
+  // without them the shorter way.
   FeatureMap(const runs::Run& measured, double span_s, std::span<const std::string> left_out = {});
 
   std::span<const Bin> bins() const { return bins_; }

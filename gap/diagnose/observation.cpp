@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/logs/body_heading.hpp"
 #include "gap/logs/copies.hpp"
 #include "gap/logs/held_samples.hpp"
 #include "gap/logs/lifted_robot.hpp"
 #include "gap/logs/other_forms.hpp"
 #include "gap/logs/plausibility.hpp"
+#include "gap/logs/unknown_columns.hpp"
 #include "robot/angles.hpp"
 #include "rollout/measured_motion.hpp"
 #include "rollout/roll_out.hpp"
@@ -87,6 +89,15 @@ void empty_repeats(runs::Run& run, const std::string& name) {
   if (!held) return;
   const auto column = static_cast<std::size_t>(std::ranges::find(run.columns, name) - run.columns.begin());
   for (const std::size_t row : held->repeats) run.values[column][row] = std::nan("");
+}
+
+// Without a heading to start with, a simulated robot goes another way in the plane. Returns whether a place was
+// forgotten.
+bool forget_place_without_heading(runs::Run& run) {
+  const bool has_place = runs::any_measured(run.column("x_m")) || runs::any_measured(run.column("y_m"));
+  if (!has_place || runs::any_measured(run.column("yaw_rad"))) return false;
+  for (const char* name : {"x_m", "y_m"}) empty_column(run, name);
+  return true;
 }
 
 // Clears the columns of dead sensors, and cells that only repeat a value. Returns what is certainly wrong, or nothing
@@ -178,10 +189,12 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   std::map<std::string, std::size_t> worlds;
   logs::KnownRuns known_runs;
   std::vector<logs::Finding> copies;
-  std::vector<std::string> refused;
+  std::vector<std::string> refused, without_heading;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
+  logs::BodyHeading heading;
   logs::OtherForms forms;
+  logs::UnknownColumns unknown;
   for (const runs::DatasetRun& entry : entries) {
     // unusable: failed simulations and copies
     if (!entry.fault.empty()) {
@@ -189,8 +202,15 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
       continue;
     }
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
-    observation.run = runs::read_run(folder / entry.file);
+    std::vector<logs::Finding> unreadable;
+    std::optional<runs::Run> read = logs::read_or_refuse(folder / entry.file, entry.file, unreadable);
+    if (!read) {
+      refused.push_back(in_words(unreadable.front()));
+      continue;
+    }
+    observation.run = std::move(*read);
     forms.look_at(observation.run, entry.file);
+    unknown.look_at(observation.run, entry.file);
     if (const auto copy = known_runs.copy(observation.run, entry.file)) {
       copies.push_back(*copy);
       continue;
@@ -201,9 +221,15 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
       refused.push_back(*wrong);
       continue;
     }
+    heading.look_at(observation.run);
     count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
-    observation.replay = rollout::replay_of(observation.run, path);
+    try {
+      observation.replay = rollout::replay_of(observation.run, path);
+    } catch (const runs::RunFileError& error) {  // of a run that was not checked
+      refused.push_back(error.what());
+      continue;
+    }
     if (observation.replay.at_most_s() < kShortest_s) {
       result.warnings.push_back(fmt::format("{}: left out, because it is shorter than {} s", entry.file, kShortest_s));
       continue;
@@ -220,6 +246,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     observation.world = known->second;
     prepare_replays(observation, path);
     lifted.look_at(observation.run, result.robot.track_gauge_m());
+    if (forget_place_without_heading(observation.run)) without_heading.push_back(entry.file);
     result.runs.push_back(std::move(observation));
   }
 
@@ -228,6 +255,13 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     throw runs::RunFileError(fmt::format("{}/{}", folder.string(), refused.front()));
   for (const std::string& words : refused) result.warnings.push_back(words + " (the run is left out)");
 
+  // a pose in another frame than the heading is wrong in all runs
+  for (const logs::Finding& finding : heading.findings()) {
+    if (finding.severity == logs::Finding::Severity::refuse && !refused_runs.unchecked)
+      throw runs::RunFileError(fmt::format("{}/{}", folder.string(), in_words(finding)));
+    result.warnings.push_back(in_words(finding));
+  }
+
   // a robot lifted off the ground shows nothing of the body's motion: only its drives are compared
   if (const auto finding = lifted.finding()) {
     for (Observation& observation : result.runs) logs::forget_body(observation.run);
@@ -235,7 +269,14 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   }
 
   // findings that concern several runs, once each
+  if (!without_heading.empty())
+    result.warnings.push_back(fmt::format(
+        "{}: yaw_rad: is missing or empty: where the robot headed at the start is unknown, so x_m and y_m are not "
+        "compared; kenaf-gap merge adds the pose from motion capture to a run{}",
+        without_heading.front(),
+        without_heading.size() > 1 ? fmt::format(" (as in {} more)", without_heading.size() - 1) : ""));
   for (const logs::Finding& finding : forms.findings()) result.warnings.push_back(in_words(finding));
+  for (const logs::Finding& finding : unknown.findings()) result.warnings.push_back(in_words(finding));
   for (const logs::Finding& finding : held.findings())
     result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())

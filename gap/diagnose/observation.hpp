@@ -40,14 +40,17 @@ struct Observations {
 bool has_obstacles(const Observations& observations);
 
 // Makes one run of a dataset, in world 0. `path` names its file in errors. Throws runs::RunFileError if it has no
-// commands or no start.
+// commands, or neither a start nor measured tracks.
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path);
 
 // Reads at most `most_runs` runs of a dataset, drawn evenly from all manoeuvres: more would take longer with little
 // benefit. `robot` and `world`, if not empty, replace the dataset's own. Leaves out, with a warning, runs that are too
 // short, copies of others, or failed simulations. Throws runs::RunFileError or DescriptionError with file, line and
-// column if one cannot be read, too many are implausible (gap/logs/plausibility.hpp), or none is left; fewer
-// implausible ones are left out with a warning, or used as they are if `refused_runs` says so.
+// column if the dataset or a description cannot be read, too many runs are implausible (gap/logs/plausibility.hpp) or
+// cannot be read, all together are (gap/logs/body_heading.hpp), or none is left; fewer implausible ones are left out
+// with a warning, or used as they are if `refused_runs` says so.
+//
+// A run without a heading shows nothing of the way: its place counts as not measured.
 //
 // Warns of channels that the described robot does not have, as they cannot be compared. Clears the values of certainly
 // dead sensors in a run, with a warning, as they would be taken for a gap.

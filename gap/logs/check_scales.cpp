@@ -13,6 +13,8 @@ namespace {
 constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15,
                  kYawFactor = 30;  // smaller ones: check_factors()
 constexpr double kSameWay = 1.4, kAsCommanded = 4;
+// Yaw over gyro, and turns over those of belts without slip, as check_factors.cpp takes them for possible.
+constexpr double kMostYawOverGyro = 1.5, kLeastTurnOfBelts = 0.08, kMostTurnOfBelts = 1.5;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
 constexpr double kDragged = 0.2;      // share of the travel commanded to the other track
@@ -20,6 +22,8 @@ constexpr double kMostSpeed_mps = 5;  // of an unknown robot
 // A robot slides against its tracks on slopes only. Elsewhere it goes as far as they do, or less because of slip; in
 // turns far less.
 constexpr double kLevel_rad = 0.1, kLeastGrip = 0.5, kLeastGripInTurns = 0.15, kMostGrip = 1.25;
+// Current that no motor of an unknown robot has. Times a described motor's largest, which descriptions often guess.
+constexpr double kNoCurrent_a = 1000, kFarAbove = 10;
 
 std::string length_unit(double factor) {
   return factor > 300 ? "millimetres" : "centimetres";
@@ -178,6 +182,36 @@ void RunChecks::check_pose_against_tracks() {
       "a left turn is positive, and then the right track is the faster one");
 }
 
+// Degrees whose steps from pose to pose are beyond pi: read as radians they unwrap to the wrong turns, so that yaw goes
+// with nothing. Read as degrees it goes with the gyro, or else with the tracks.
+void RunChecks::check_coarse_degrees() {
+  struct Other {
+    const char* name;
+    Course course;
+    double least, most;  // of yaw over it
+  };
+  std::vector<Other> others;
+  if (has("gyro_z_radps"))
+    others.push_back({"gyro_z_radps says", rate("gyro_z_radps"), 1 / kMostYawOverGyro, kMostYawOverGyro});
+  if (robot_ != nullptr)
+    others.push_back({"the tracks turn it", belts(-1, 1), kLeastTurnOfBelts / robot_->track_gauge_m(),
+                      kMostTurnOfBelts / robot_->track_gauge_m()});
+  const Course as_read = upright_angle("yaw_rad"),
+               as_degrees = upright_angle("yaw_rad", kUpright_rad, kDegreesInARadian);
+  for (const Other& other : others) {
+    const auto read = relate(as_read, other.course), degrees = relate(as_degrees, other.course);
+    // Where it goes with the other as read, and far enough, steps are small, and the other checks judge.
+    if (read && read->correlation >= kTogether && read->ratio >= other.least) return;
+    if (!degrees || degrees->correlation < kTogether || degrees->first < kLeastTurn_rad) continue;
+    if (degrees->ratio < other.least || degrees->ratio > other.most || found("yaw_rad")) continue;
+    return add(
+        Severity::refuse, "yaw_rad",
+        fmt::format("looks like degrees: read so, the robot turns as {} (correlation {:.2f}), read as radians it "
+                    "does not (correlation {:.2f}); columns are in radians: multiply by pi/180",
+                    other.name, degrees->correlation, read ? read->correlation : 0));
+  }
+}
+
 void RunChecks::check_scales() {
   // A track whose command is small compared with the other's may be dragged by it, against its own command.
   double most_asked_m = 0;
@@ -234,6 +268,7 @@ void RunChecks::check_scales() {
   }
 
   // The pose's angles against the gyro.
+  check_coarse_degrees();
   for (const auto& [angle, axis] : {std::pair{"yaw_rad", "z"}, {"pitch_rad", "y"}, {"roll_rad", "x"}}) {
     const std::string gyro = std::string("gyro_") + axis + "_radps";
     const auto relation = relate(upright_angle(angle), rate(gyro));
@@ -275,9 +310,21 @@ void RunChecks::check_ranges() {
   for (const std::string name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
     refuse_above(name, 60, "rad/s at most, ten turns per second: it looks like degrees per second");
   refuse_above("battery_v", 1000, "V: it looks like millivolts");
-  for (const std::string side : kSides) refuse_above("track_" + side + "_a", 1000, "A: it looks like milliamperes");
+  const auto check_current = [&](const std::string& name, double largest_a) {
+    if (!(largest_a > 0)) return refuse_above(name, kNoCurrent_a, "A: it looks like milliamperes");
+    refuse_above(
+        name, kFarAbove * largest_a,
+        fmt::format("A, although the robot's description allows {:.3g} A at most: it looks like milliamperes; divide "
+                    "by 1000",
+                    largest_a));
+  };
+  const double of_track_a =
+      robot_ != nullptr ? robot_->drive.idle_amperes + robot_->drive.amperes_per_newton * robot_->drive.max_force_n : 0;
+  const double of_flipper_a =
+      robot_ != nullptr && robot_->has_flippers() ? robot_->servo.amperes_per_nm * robot_->servo.max_torque_nm : 0;
+  for (const std::string side : kSides) check_current("track_" + side + "_a", of_track_a);
   for (const std::string_view flipper : robot::kFlipperNames)
-    refuse_above(fmt::format("flipper_{}_a", flipper), 1000, "A: it looks like milliamperes");
+    check_current(fmt::format("flipper_{}_a", flipper), of_flipper_a);
 
   // Flippers against their limits: far beyond, the unit is wrong; somewhat beyond, a warning.
   if (robot_ != nullptr && robot_->has_flippers()) {

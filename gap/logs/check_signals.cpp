@@ -229,7 +229,7 @@ void RunChecks::check_pose() {
                     "were confused; empty the cells there",
                     jumps, farthest_m),
         line(first_jump));
-  if (turns > 0)
+  if (turns > 0 && !refused("yaw_rad"))
     add(Severity::warn, "yaw_rad",
         fmt::format("jumps {} times by more than a robot can turn between two rows: markers were confused; empty the "
                     "cells there",

@@ -15,9 +15,10 @@ class LiftedRobot {
   // `gauge_m`: distance between the tracks.
   void look_at(const runs::Run& run, double gauge_m);
   // Returns a finding for the whole dataset if there are at least three runs in which the measured tracks would carry
-  // the robot 0.5 m or more, forward or at the tracks in a turn, and the pose goes less than 30 % of that in each run
-  // and less than 15 % in all together (chosen): a robot on the ground that is blocked or spins in one run moves in
-  // another. None without a pose.
+  // the robot 0.5 m or more between the first pose and the last, forward or at the tracks in a turn, and the body goes
+  // less than 30 % of that in each run and less than 15 % in all together (chosen), by its pose and its gyro: a robot
+  // on the ground that is blocked or spins in one run moves in another. A mean turn rate below 0.05 rad/s counts as the
+  // gyro's bias. None without a pose.
   std::optional<Finding> finding() const;
 
  private:

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <set>
 
+#include "gap/logs/body_heading.hpp"
 #include "gap/logs/lifted_robot.hpp"
 #include "gap/logs/other_forms.hpp"
 #include "gap/logs/run_checks.hpp"
+#include "gap/logs/unknown_columns.hpp"
 
 namespace kenaf::gap::logs {
 
@@ -48,6 +50,16 @@ std::vector<Finding> HeldInRuns::findings() const {
   return findings;
 }
 
+std::optional<runs::Run> read_or_refuse(const std::filesystem::path& path, const std::string& file,
+                                        std::vector<Finding>& findings) {
+  try {
+    return runs::read_run(path);
+  } catch (const runs::RunFileError& error) {
+    findings.push_back({Finding::Severity::refuse, file, 0, "", fmt::format("cannot be read: {}", error.what())});
+    return std::nullopt;
+  }
+}
+
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot) {
   constexpr std::size_t kFewestRows = 10;
   if (run.row_count() < kFewestRows)
@@ -66,6 +78,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   checks.check_held();
   checks.check_pose();
   checks.check_drift();
+  checks.check_replay();
   std::ranges::move(checks.take(), std::back_inserter(findings));
   return findings;
 }
@@ -98,18 +111,24 @@ std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<
   std::vector<Finding> findings;
   HeldInRuns held;
   LiftedRobot lifted;
+  BodyHeading heading;
   OtherForms forms;
+  UnknownColumns unknown;
   for (std::size_t i = 0; i < std::min(runs.size(), dataset.runs.size()); ++i) {
     columns.push_back(runs[i].columns);
     forms.look_at(runs[i], dataset.runs[i].file);
+    unknown.look_at(runs[i], dataset.runs[i].file);
     if (!dataset.runs[i].fault.empty()) continue;
     std::vector<Finding> found = check_run(runs[i], dataset.runs[i].file, robot);
     held.take_off(found);
+    if (!any_refused(found)) heading.look_at(runs[i]);
     std::ranges::move(found, std::back_inserter(findings));
     if (robot != nullptr) lifted.look_at(runs[i], robot->track_gauge_m());
   }
   std::ranges::move(forms.findings(), std::back_inserter(findings));
+  std::ranges::move(unknown.findings(), std::back_inserter(findings));
   std::ranges::move(held.findings(), std::back_inserter(findings));
+  std::ranges::move(heading.findings(), std::back_inserter(findings));
   if (const auto finding = lifted.finding()) findings.push_back(*finding);
   std::ranges::move(check_noise(dataset, columns), std::back_inserter(findings));
   return findings;

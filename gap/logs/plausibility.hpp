@@ -16,12 +16,15 @@
 // pose's sign against the tracks is refused if it is wrong on level ground too (roll and pitch below 0.1 rad, where
 // measured) and the pose goes 0.5 to 1.25 times as far (yaw: 0.15 to 1.25 times, by the robot's gauge). A yaw that
 // never changes is refused if the gyro, or without one the tracks, show a turn. A live sensor in whole counts is not
-// taken for a held one: it changes in each row while its quantity moves by more than four counts.
+// taken for a held one: it changes in each row while its quantity moves by more than four counts. A run that no
+// simulation can repeat (rollout::replay_of()) is refused, too.
 //
 // Thread safety: pure functions.
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -73,6 +76,10 @@ class HeldInRuns {
   };
   std::vector<OfColumn> columns_;
 };
+
+// Reads a run. One that cannot be read is one more finding that refuses it, so that the checks of the others go on.
+std::optional<runs::Run> read_or_refuse(const std::filesystem::path& path, const std::string& file,
+                                        std::vector<Finding>& findings);
 
 // Checks one run against the limits of `robot`; null: unknown, and fewer findings are certain.
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot);

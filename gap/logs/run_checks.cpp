@@ -42,15 +42,16 @@ std::vector<bool> RunChecks::upright(double most_tilt_rad) const {
   return upright;
 }
 
-Course RunChecks::upright_angle(const std::string& name, double most_tilt_rad) const {
+Course RunChecks::upright_angle(const std::string& name, double most_tilt_rad, double units_in_a_radian) const {
   const auto t_s = column("t_s"), values = column(name);
-  const std::vector<bool> is_upright = upright(most_tilt_rad);
+  const std::vector<bool> is_upright = upright(units_in_a_radian * most_tilt_rad);
   std::vector<double> kept(values.begin(), values.end());
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!is_upright[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
   Course course = course_of(t_s, kept, longest_gap_s(median_step(t_s, values)));
 
   // Unwraps by the shorter way between samples.
+  for (double& value : course.value) value /= units_in_a_radian;
   double before = course.value.empty() ? 0 : course.value.front();
   for (std::size_t i = 1; i < course.value.size(); ++i) {
     const double now = course.value[i];
@@ -66,6 +67,10 @@ Course RunChecks::rate(const std::string& name) const {
 }
 
 Course RunChecks::forward(double most_tilt_rad) const {
+  return along(0, 1, most_tilt_rad);
+}
+
+Course RunChecks::along(double left_of_heading_rad, double y_sign, double most_tilt_rad) const {
   const auto t_s = column("t_s"), x = column("x_m"), y = column("y_m"), yaw = column("yaw_rad");
   Course course;
   if (x.empty() || y.empty() || yaw.empty()) return course;
@@ -75,9 +80,10 @@ Course RunChecks::forward(double most_tilt_rad) const {
     if (std::isnan(x[i] + y[i] + yaw[i]) || !is_upright[i]) continue;
     double sum = 0;
     if (!course.t_s.empty()) {
-      // The displacement along the heading half way between both rows.
-      const double heading = yaw[last] + 0.5 * std::remainder(yaw[i] - yaw[last], 2 * std::numbers::pi);
-      sum = course.value.back() + (x[i] - x[last]) * std::cos(heading) + (y[i] - y[last]) * std::sin(heading);
+      // The displacement along the heading half way between both rows, or beside it.
+      const double heading =
+          yaw[last] + 0.5 * std::remainder(yaw[i] - yaw[last], 2 * std::numbers::pi) + left_of_heading_rad;
+      sum = course.value.back() + (x[i] - x[last]) * std::cos(heading) + y_sign * (y[i] - y[last]) * std::sin(heading);
     }
     course.t_s.push_back(t_s[i]);
     course.value.push_back(sum);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gap/logs/body_heading.hpp"
 #include "gap/logs/course.hpp"
 #include "gap/logs/plausibility.hpp"
 
@@ -40,7 +41,11 @@ class RunChecks {
   void check_constants();
   void check_held();
   void check_pose();
-  void check_drift();  // of the pose's clock; long
+  void check_drift();   // of the pose's clock; long
+  void check_replay();  // whether a simulation can repeat it; after all others
+
+  // How the belts and the pose's travel go together on level ground, in pieces of a few seconds; after check_wraps().
+  std::vector<HeadingPiece> heading_pieces() const;
 
   std::vector<Finding> take() { return std::exchange(findings_, {}); }
 
@@ -58,12 +63,15 @@ class RunChecks {
   Course adding(const std::string& name) const;  // of an accumulated column: travel, an angle
   // Unwrapped roll, pitch or yaw while the robot is upright: near pitch pi/2 yaw jumps, and upside down the angles
   // turn the other way.
-  Course upright_angle(const std::string& name, double most_tilt_rad = kUpright_rad) const;
+  Course upright_angle(const std::string& name, double most_tilt_rad = kUpright_rad,
+                       double units_in_a_radian = 1) const;  // of roll, pitch and yaw in the file
   // For each row, by the newest roll and pitch of the pose, or else of the orientation sensor, if there are any.
   std::vector<bool> upright(double most_tilt_rad = kUpright_rad) const;
   Course rate(const std::string& name) const;             // of a column of rates
   Course forward(double most_tilt_rad = INFINITY) const;  // travel of the pose along its heading
-  Course belts(double left, double right) const;          // weighted sum of both tracks: measured, else commanded
+  // Travel of the pose along a direction that is fixed to its heading. `y_sign`: -1 reads y as mirrored.
+  Course along(double left_of_heading_rad, double y_sign, double most_tilt_rad) const;
+  Course belts(double left, double right) const;  // weighted sum of both tracks: measured, else commanded
   std::optional<Relation> relate(const Course& first, const Course& second) const;
   // Compares values about their means instead of rates, as a slow servo follows in value and not in rate. An empty cell
   // holds the value before it. `first` and `second` are the ranges of the two.
@@ -77,6 +85,7 @@ class RunChecks {
   void check_turned_sign(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
                          double enough_first, double enough_second, const std::string& what_to_do);
   void check_pose_against_tracks();
+  void check_coarse_degrees();
   // `on_level` is the same relation on level ground only. The ratio of a robot that obeys its tracks lies between
   // `least_ratio` and `most_ratio`.
   void check_against_tracks(const std::string& name, const std::optional<Relation>& relation,

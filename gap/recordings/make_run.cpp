@@ -106,8 +106,29 @@ class RunMaker {
 
   void add_column(const ColumnMapping& column) {
     const robot::Column* known = robot::find_column(column.column);
-    add(column.column, sampled(converted(collected_, column.from, column.timing, column.factor), rows_s_, column.timing,
-                               known != nullptr && known->wraps));
+    std::vector<double> values = sampled(converted(collected_, column.from, column.timing, column.factor), rows_s_,
+                                         column.timing, known != nullptr && known->wraps);
+    if (known != nullptr && known->quantity == robot::Quantity::track_command)
+      stop_where_it_ended(column.column, column.timing, values);
+    add(column.column, std::move(values));
+  }
+
+  // A replay repeats a command over empty cells. Where the mapping says for how long one is in force, as a drive's
+  // watchdog does, the tracks stop after it.
+  void stop_where_it_ended(const std::string& name, const Timing& timing, std::vector<double>& values) {
+    if (timing.sampling != Sampling::hold || !timing.max_gap_s) return;
+    std::size_t stopped = 0;
+    const auto begin = std::ranges::find_if(values, [](double value) { return !std::isnan(value); });
+    for (auto value = begin; value != values.end(); ++value) {
+      if (!std::isnan(*value)) continue;
+      *value = 0;
+      ++stopped;
+    }
+    if (stopped > 0)
+      made_.remarks.push_back(
+          fmt::format("{}: 0, to stop, in {} rows that are more than max_gap_s = {:.3g} s after "
+                      "the command before them",
+                      name, stopped, *timing.max_gap_s));
   }
 
   void add_drive(const DriveMapping& drive) {
@@ -119,6 +140,10 @@ class RunMaker {
     for (std::size_t i = 0; i < v.size(); ++i) {
       left[i] = v[i] - 0.5 * *gauge_m * w[i];
       right[i] = v[i] + 0.5 * *gauge_m * w[i];
+    }
+    if (drive.commanded) {
+      stop_where_it_ended(columns_of(drive)[0], drive.timing, left);
+      stop_where_it_ended(columns_of(drive)[1], drive.timing, right);
     }
     add(columns_of(drive)[0], std::move(left));
     add(columns_of(drive)[1], std::move(right));

@@ -40,7 +40,7 @@ struct Timing {
   double delay_s = 0;  // how long after the measured moment the recording says that it was
   Sampling sampling = Sampling::linear;
   // The longest time that hold bridges, or between the two values of linear. Empty: 1 s of hold, 2.5 median steps of
-  // linear.
+  // linear. Beyond one that is given, a held command of a track is 0: the track stops.
   std::optional<double> max_gap_s{};
 };
 

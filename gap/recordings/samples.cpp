@@ -7,11 +7,14 @@
 #include <numeric>
 #include <optional>
 
+#include "gap/logs/median.hpp"
 #include "gap/recordings/message_reader.hpp"
 #include "gap/recordings/recording_error.hpp"
 
 namespace kenaf::gap::recordings {
 namespace {
+
+constexpr double kJitter_s = 1, kStepsOfJitter = 3;  // the larger one is the longest step back of jitter; chosen
 
 // A source whose samples are being gathered.
 struct Gathering {
@@ -50,6 +53,39 @@ bool is_of_topic(const std::string& from, const std::string& topic) {
   return from.size() > topic.size() + 1 && from.starts_with(topic) && from[topic.size()] == '/';
 }
 
+// Where times go back, in the order in which they were recorded.
+struct StepsBack {
+  std::size_t count = 0;
+  std::size_t largest = 0;  // the place of the one after the largest
+  double from_s = 0, to_s = 0;
+  double longest_jitter_s = 0;  // a longer one is no jitter
+
+  bool are_jitter() const { return from_s - to_s <= longest_jitter_s; }
+};
+
+StepsBack steps_back(std::span<const double> t_s) {
+  StepsBack back;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    const double step_s = t_s[i] - t_s[i - 1];
+    steps.push_back(std::abs(step_s));
+    if (step_s >= 0) continue;
+    ++back.count;
+    if (t_s[i - 1] - t_s[i] > back.from_s - back.to_s) back.largest = i, back.from_s = t_s[i - 1], back.to_s = t_s[i];
+  }
+  if (back.count > 0) back.longest_jitter_s = std::max(kJitter_s, kStepsOfJitter * logs::upper_median(steps));
+  return back;
+}
+
+// Refuses times that go back far: two drives sorted into each other are neither.
+void check_goes_on(const StepsBack& back, const std::string& whose, const std::string& where, const char* what_to_do) {
+  if (back.count == 0 || back.are_jitter()) return;
+  throw RecordingError(
+      fmt::format("{} goes back from {:.3f} to {:.3f} s{}: several drives, or a clock that was set "
+                  "back? {}",
+                  whose, back.from_s, back.to_s, where, what_to_do));
+}
+
 // Sorts by time, and keeps of values of one time the last.
 void put_in_order(Samples& samples) {
   std::vector<std::size_t> order(samples.t_s.size());
@@ -85,11 +121,18 @@ class Gatherer {
   }
   static void finish(std::vector<Gathering>& gatherings, Collected& collected) {
     for (Gathering& gathering : gatherings) {
+      const StepsBack back = steps_back(gathering.samples.t_s);
+      check_goes_on(back, fmt::format("{}: its time", gathering.source.from), "",
+                    "Cut the recording, take one drive with --from and --to, or give the entry time = \"log\"");
       const std::size_t before = gathering.samples.t_s.size();
       put_in_order(gathering.samples);
-      if (const std::size_t same = before - gathering.samples.t_s.size(); same > 0)
-        collected.remarks.push_back(
-            fmt::format("{}: {} values have the time of another and are left out", gathering.source.from, same));
+      const std::size_t same = before - gathering.samples.t_s.size();
+      std::string remark;
+      if (same > 0) remark = fmt::format("{} values have the time of another and are left out", same);
+      if (back.count > 0)
+        remark += fmt::format("{}{} values come before the one before them, by up to {:.3g} s, and are sorted",
+                              remark.empty() ? "" : "; ", back.count, back.from_s - back.to_s);
+      if (!remark.empty()) collected.remarks.push_back(gathering.source.from + ": " + remark);
       if (gathering.failed > 0)
         collected.not_understood.push_back({gathering.source.from, gathering.failed, gathering.first_reason});
       collected.samples[gathering.source] = std::move(gathering.samples);
@@ -223,6 +266,19 @@ Collected collect(const Table& table, std::span<const Source> sources, const std
   const double begin = first == times.end() ? 0 : *first;
   Collected collected;
   collected.remarks = table.remarks;
+
+  // The clock of the rows that count, in the order of the file.
+  std::vector<double> rows_s;
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    const double t_s = time_unit_s * (times[row] - begin);
+    if (!std::isfinite(t_s) || t_s < options.from_s || t_s > options.to_s) continue;
+    rows_s.push_back(t_s);
+    rows.push_back(row + 1);
+  }
+  const StepsBack back = steps_back(rows_s);
+  check_goes_on(back, time_column, back.count > 0 ? fmt::format(" in row {} of the table", rows[back.largest]) : "",
+                "Cut the file into one for each drive, or take one with --from and --to");
 
   // The cells of each source that hold a number within the wanted time.
   Gatherer gatherer;

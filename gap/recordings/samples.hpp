@@ -52,7 +52,8 @@ struct CollectOptions {
 
 // Visits the recording once. Messages before `from_s` and after `to_s`, by log time, do not count. Throws
 // RecordingError if a source names no topic of the recording, or a path that its messages cannot have; if there are
-// more than kMostSamples values.
+// more than kMostSamples values; if the times of a source go back by more than 1 s and three of their median steps, as
+// of two drives in one file. Values that come less out of order are sorted, with a remark.
 Collected collect(const Recording& recording, std::span<const Source> sources, const CollectOptions& options,
                   const TellProgress& tell);
 // The same of a table, whose times are in `time_column` in units of `time_unit_s`. Throws RecordingError if a column is

@@ -114,3 +114,17 @@ TEST_CASE("The replay of a drop falls from where the run began") {
   for (std::size_t i = 0; i < first.run.row_count(); ++i)
     CHECK(second.run.column("flipper_fl_rad")[i] == Approx(first.run.column("flipper_fl_rad")[i]).margin(1e-3));
 }
+
+TEST_CASE("A run whose tracks were measured starts at 0 where nobody saw the robot, and cannot be too long") {
+  const std::string tracks = "t_s,cmd_track_left_mps,cmd_track_right_mps,track_left_mps,track_right_m";
+  const Manoeuvre unseen = replay(tracks + "\n0,0.1,0.1,0,0\n1,0.1,0.1,0.1,0.1\n");
+  REQUIRE(unseen.start);
+  CHECK(unseen.start->x_m == 0);
+  CHECK(unseen.start->y_m == 0);
+  CHECK(unseen.start->yaw_rad == 0);
+  const Manoeuvre without_yaw = replay(tracks + ",x_m,y_m\n0,0.1,0.1,0,0,2,3\n");
+  CHECK(without_yaw.start->x_m == 2);
+  CHECK(without_yaw.start->yaw_rad == 0);
+  CHECK_THROWS_WITH(replay(tracks + "\n0,0.1,0.1,0,0\n3601,0.1,0.1,0.1,0.1\n"),
+                    Contains("run.csv: lasts 3601 s") && Contains("cut the file"));
+}

@@ -139,3 +139,13 @@ TEST_CASE("A file beside dataset.toml becomes its path, a shipped name stays") {
   CHECK(resolve_beside("data/real", "/etc/mine.toml", ".toml") == "/etc/mine.toml");
   CHECK(resolve_beside("data/real", "kenaf", ".toml") == "kenaf");
 }
+
+TEST_CASE("The file dataset.toml in place of its folder is named with the folder") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "dataset.toml") << kExample;
+  CHECK_THROWS_WITH(read_dataset(folder / "dataset.toml"),
+                    Catch::EndsWith("is the file of a dataset; give its folder, " + folder.path().string()));
+  CHECK(folder_of_dataset(folder / "dataset.toml") == folder.path());
+  CHECK(folder_of_dataset(folder.path()) == folder.path());
+  CHECK(folder_of_dataset("no/such/dataset.toml") == "no/such/dataset.toml");
+}

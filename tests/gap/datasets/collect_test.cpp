@@ -243,3 +243,86 @@ TEST_CASE("What is no run, or not plausible, writes nothing, and says why") {
   CHECK(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --world hall.sdf --out data").status == 2);
   CHECK(files() == count);
 }
+
+TEST_CASE("A run that cannot be read counts as refused, and the others are checked, collected and diagnosed") {
+  const TemporaryFolder folder;
+  std::string files;
+  for (int i = 0; i < 10; ++i) {
+    const std::string name = "run-" + std::to_string(i) + ".csv";
+    record(folder, name, 0.2 + 0.01 * i);
+    files += name + " ";
+  }
+  // the stamp of the second row comes twice
+  const std::string good = read_file(folder / "run-0.csv");
+  const std::size_t second = good.find('\n', good.find('\n') + 1) + 1, third = good.find('\n', second) + 1;
+  write_file(folder / "twice.csv", good.substr(0, third) + good.substr(second));
+  const Outcome outcome = kenaf_gap(folder, "dataset twice.csv " + files + "--manoeuvre straight --out data");
+  INFO(outcome.error);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.error, Catch::Contains("twice.csv:4:1: t_s does not increase from the row before: a duplicate "
+                                            "stamp") &&
+                                Catch::Contains("kenaf-gap import"));
+  CHECK_THAT(outcome.out, Catch::Contains("twice.csv: left out, as it is refused\ndata: 10 runs in a new dataset"));
+
+  // the same in a dataset that is there
+  write_file(folder / "data/run-3.csv", read_file(folder / "twice.csv"));
+  Outcome checked = kenaf_gap(folder, "check data");
+  CHECK(checked.status == 0);
+  CHECK_THAT(checked.out, Catch::StartsWith("run-3.csv: cannot be read: data/run-3.csv:4:1: t_s does not increase") &&
+                              Catch::Contains("10 runs; findings: 1 refused, 0 warned of\na diagnosis leaves 1 of 10"));
+  CHECK(kenaf_gap(folder, "check data --strict").status == 2);
+  std::filesystem::remove(folder / "data/run-4.csv");
+  checked = kenaf_gap(folder, "check data");
+  CHECK(checked.status == 2);
+  CHECK_THAT(checked.out, Catch::Contains("run-4.csv: cannot be read: data/run-4.csv: cannot be opened"));
+
+  // unchecked is no way to read what cannot be read
+  CHECK(kenaf_gap(folder, "dataset twice.csv --manoeuvre straight --unchecked --out none").status == 2);
+  CHECK_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST_CASE("A dataset may be named by its dataset.toml where it is checked, elsewhere the error names its folder") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  const Outcome checked = kenaf_gap(folder, "check data/dataset.toml");
+  CHECK(checked.status == 0);
+  CHECK_THAT(checked.out, Catch::EndsWith("1 runs; findings: 0 refused, 0 warned of\n"));
+  CHECK_THAT(kenaf_gap(folder, "diagnose data/dataset.toml --out report").error,
+             Catch::Contains("data/dataset.toml: is the file of a dataset; give its folder, data"));
+}
+
+TEST_CASE("Runs whose y is mirrored are refused together, and taken unchecked") {
+  // a circle of 0.5 m at 0.3 m/s, whose y counts to the right: six runs of 6 s, each a little faster
+  const TemporaryFolder folder;
+  std::string files;
+  for (int k = 0; k < 6; ++k) {
+    runs::Run run{{"t_s", "cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps", "x_m",
+                   "y_m", "yaw_rad"},
+                  {}};
+    run.values.resize(run.columns.size());
+    const double v = 0.3 + 0.01 * k, w = v / 0.5;
+    for (int i = 0; i < 300; ++i) {
+      const double t = 0.02 * i, row[] = {t,
+                                          v - 0.3 * w,
+                                          v + 0.3 * w,
+                                          v - 0.3 * w,
+                                          v + 0.3 * w,
+                                          0.5 * std::sin(w * t),
+                                          -0.5 * (1 - std::cos(w * t)),
+                                          std::remainder(w * t, 6.283185307179586)};
+      for (std::size_t c = 0; c < run.columns.size(); ++c) run.values[c].push_back(row[c]);
+    }
+    runs::write_run(folder / (std::to_string(k) + ".csv"), run);
+    files += std::to_string(k) + ".csv ";
+  }
+  const Outcome refused = kenaf_gap(folder, "dataset " + files + "--manoeuvre arc --out data");
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.error, Catch::Contains("dataset.toml: y_m: is mirrored against yaw_rad"));
+  REQUIRE(kenaf_gap(folder, "dataset " + files + "--manoeuvre arc --unchecked --out data").status == 0);
+  const Outcome checked = kenaf_gap(folder, "check data");
+  CHECK(checked.status == 2);
+  CHECK_THAT(checked.out, Catch::Contains("dataset.toml: y_m: is mirrored against yaw_rad"));
+  CHECK_THAT(kenaf_gap(folder, "diagnose data --out report").error,
+             Catch::Contains("data/dataset.toml: y_m: is mirrored against yaw_rad"));
+}

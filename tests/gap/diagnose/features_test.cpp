@@ -141,3 +141,30 @@ TEST_CASE("Robot and simulation need not be sampled alike") {
     CHECK((simulated - map.measured()).norm() < 1e-12);
   }
 }
+
+TEST_CASE("Over a gap of the pose yaw goes on by the whole turns of the gyro, or else of the tracks") {
+  // 2 rad/s to the left; the pose is lost after 0.9 s until 4.1 s, in which the robot turns by 6.4 rad: the shorter way
+  // is 0.12 rad
+  const auto yaw = [](double t_s) {
+    return t_s > 0.95 && t_s < 4.05 ? kNaN : std::remainder(2 * t_s, 2 * std::numbers::pi);
+  };
+  const auto rate = [](double) { return 2.0; };
+  const auto left = [](double) { return -0.3; };
+  const auto right = [](double) { return 0.3; };
+  const auto last_yaw = [&](const std::vector<test::ColumnOfTime>& others) {
+    std::vector<test::ColumnOfTime> columns{{"yaw_rad", yaw}};
+    columns.insert(columns.end(), others.begin(), others.end());
+    const FeatureMap map(made_run(5, 0.1, columns), 0.5);
+    double last = 0;
+    for (std::size_t i = 0; i < map.bins().size(); ++i)
+      if (column_of(map.bins()[i]) == "yaw_rad") last = map.measured()[static_cast<Eigen::Index>(i)];
+    return last;
+  };
+  // the last bin has the times from 4.5 to 4.9 s, 4.7 s in the mean
+  CHECK(last_yaw({{"gyro_z_radps", rate}}) == Approx(9.4));
+  CHECK(last_yaw({{"track_left_mps", left}, {"track_right_mps", right}}) == Approx(9.4));
+  CHECK(last_yaw({}) == Approx(9.4 - 2 * std::numbers::pi));
+  // a gyro that is lost with the pose says nothing
+  const auto lost = [](double t_s) { return t_s > 0.95 && t_s < 4.05 ? kNaN : 2.0; };
+  CHECK(last_yaw({{"gyro_z_radps", lost}}) == Approx(9.4 - 2 * std::numbers::pi));
+}

@@ -259,3 +259,90 @@ TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not 
   CHECK(drawn.runs[1].manoeuvre == "c");
   CHECK(drawn.runs[2].manoeuvre == "e");
 }
+
+TEST_CASE("A run without a heading is compared by its drives, one that cannot be repeated is left out") {
+  const test::TemporaryFolder folder;
+  const auto track = [](double t_s) { return t_s < 1 ? 0 : 0.2; };
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  std::string toml = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+  const auto write = [&](const std::string& name, std::vector<test::ColumnOfTime> columns, bool tracks) {
+    if (tracks) columns.insert(columns.end(), {{"track_left_mps", track}, {"track_right_mps", track}});
+    // the gyro's noise tells the runs apart
+    columns.push_back({"gyro_z_radps", [name](double t_s) { return 1e-4 * std::sin(t_s + name[0]); }});
+    runs::write_run(folder / (name + ".csv"), commanded_to_go(1, columns));
+    toml += "[[run]]\nfile = \"" + name + ".csv\"\n";
+  };
+  write("a", {{"x_m", x}, {"y_m", zero}}, false);  // no heading to start with, and nothing else to compare
+  write("b", {{"x_m", x}, {"y_m", zero}}, true);
+  for (const char* name : {"c", "d", "e", "f", "g", "h", "i", "j", "k"}) write(name, {}, true);
+  test::write_file(folder / "dataset.toml", toml);
+  for (const bool unchecked : {false, true}) {
+    const Observations seen = observe(folder.path(), "", "", 20, {.unchecked = unchecked});
+    REQUIRE(seen.runs.size() == 10);
+    CHECK(seen.runs[0].file == "b.csv");
+    CHECK_FALSE(runs::any_measured(seen.runs[0].run.column("x_m")));
+    CHECK(runs::any_measured(seen.runs[0].run.column("track_left_mps")));
+    CHECK(runs::any_measured(seen.runs[0].run.column("gyro_z_radps")));
+    CHECK(seen.runs[1].replay.start->x_m == 0);
+    CHECK(seen.runs[1].measured);
+    const auto says = [&](const std::string& begin, const std::string& words) {
+      return std::ranges::any_of(seen.warnings, [&](const std::string& warning) {
+        return warning.find(begin) != std::string::npos && warning.find(words) != std::string::npos;
+      });
+    };
+    CHECK(says("a.csv: has no yaw_rad", "(the run is left out)"));
+    CHECK(says("b.csv: yaw_rad: is missing", "x_m and y_m are not compared"));
+  }
+}
+
+TEST_CASE("A run that cannot be read is left out of many") {
+  const test::TemporaryFolder folder;
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  std::string toml =
+      "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n"
+      "[[run]]\nfile = \"twice.csv\"\n";
+  test::write_file(folder / "twice.csv", "t_s,x_m\n0,0\n0,0\n");
+  for (int i = 0; i < 9; ++i) {
+    const auto yaw = [i](double t_s) { return 0.0001 * (i + 1) * std::sin(t_s); };
+    runs::write_run(folder / (std::to_string(i) + ".csv"),
+                    commanded_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", yaw}}));
+    toml += "[[run]]\nfile = \"" + std::to_string(i) + ".csv\"\n";
+  }
+  test::write_file(folder / "dataset.toml", toml);
+  const Observations seen = observe(folder.path(), "", "", 20);
+  CHECK(seen.runs.size() == 9);
+  CHECK(std::ranges::any_of(seen.warnings, [](const std::string& warning) {
+    return warning.starts_with("twice.csv: cannot be read: ") && warning.ends_with("(the run is left out)");
+  }));
+  CHECK_THROWS_WITH(observe(folder.path(), "", "", 20, {.strict = true}), Catch::Contains("t_s does not increase"));
+}
+
+TEST_CASE("A robot whose pose hardly moves is on the ground where its gyro turns") {
+  // Belts at 0.3 m/s against each other for two seconds, a pose without a heading, a gyro at 2 rad/s: 4 rad at half the
+  // gauge of 0.2 m are 0.4 m of the belts' 0.6 m.
+  const test::TemporaryFolder folder;
+  const auto sways = [](double t_s) { return 0.03 * std::sin(5 * t_s); };
+  const auto turned = [&](double rate_radps) {
+    std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+    for (int i = 0; i < 3; ++i) {
+      const double speed_mps = 0.3 + 0.01 * i;
+      const auto left = [=](double t_s) { return t_s < 1 ? 0 : -speed_mps; };
+      const auto right = [=](double t_s) { return t_s < 1 ? 0 : speed_mps; };
+      const auto gyro = [=](double t_s) { return 0.02 + (t_s < 1 ? 0 : rate_radps) + 1e-5 * std::sin(7 * t_s); };
+      runs::write_run(folder / (std::to_string(i) + ".csv"), test::made_run(3.05, 0.05,
+                                                                            {{"cmd_track_left_mps", left},
+                                                                             {"cmd_track_right_mps", right},
+                                                                             {"track_left_mps", left},
+                                                                             {"track_right_mps", right},
+                                                                             {"x_m", sways},
+                                                                             {"y_m", zero},
+                                                                             {"gyro_z_radps", gyro}}));
+      dataset += "[[run]]\nfile = \"" + std::to_string(i) + ".csv\"\n";
+    }
+    test::write_file(folder / "dataset.toml", dataset);
+    const Observations seen = observe(folder.path(), "", "", 10, {.unchecked = true});
+    return runs::any_measured(seen.runs.front().run.column("gyro_z_radps"));
+  };
+  CHECK(turned(2));
+  CHECK_FALSE(turned(0));  // its bias of 0.02 rad/s is no turn
+}

@@ -192,6 +192,47 @@ TEST_CASE("Yaw in degrees is seen by the tracks where there is no gyro") {
   CHECK_THAT(found(run), Catch::Contains("yaw_rad: looks like degrees: the robot turns"));
 }
 
+TEST_CASE("Yaw in degrees is seen in a pose so slow that it turns by more than pi of them between two") {
+  // it turns by 0.41 rad/s, 23.6 degrees: in a tenth of a second by 2.4 of them, in a fifth by 4.7
+  for (const std::size_t every : {10, 20}) {
+    runs::Run run = scaled(arc(), {"yaw_rad"}, kDegrees);
+    for (const auto& names : {kPlace, kAngles})
+      for (const std::string& name : names)
+        for (std::size_t i = 0; i < run.row_count(); ++i)
+          if (i % every != 0) column(run, name)[i] = std::nan("");
+    INFO(every);
+    CHECK_THAT(found(run), Catch::Contains("yaw_rad: looks like degrees") && !Catch::Contains("markers"));
+    for (double& value : column(run, "gyro_z_radps")) value = std::nan("");
+    CHECK_THAT(found(run), Catch::Contains("yaw_rad: looks like degrees") && !Catch::Contains("markers"));
+  }
+}
+
+TEST_CASE("Milliamperes of a small robot are seen by what its description allows") {
+  // Kenaf's motors take a few amperes: in milliamperes not even a thousand
+  runs::Run run = arc();
+  for (std::size_t i = 0; i < run.row_count(); ++i) column(run, "track_left_a")[i] = 600 + double(i % 7);
+  CHECK_THAT(found(run), Catch::Contains("track_left_a: is 606 A, although the robot's description allows") &&
+                             Catch::Contains("milliamperes"));
+  CHECK(words(gap::logs::check_run(run, "run.csv", nullptr)) == "");
+}
+
+TEST_CASE("A run that no simulation can repeat is refused") {
+  const auto level = [](double) { return 0.0; };
+  const auto track = [](double t_s) { return t_s < 0.5 ? 0 : 0.2; };
+  const auto way = [](double t_s) { return t_s < 0.5 ? 0 : 0.2 * (t_s - 0.5); };
+  const std::vector<test::ColumnOfTime> seen{
+      {"cmd_track_left_mps", track}, {"cmd_track_right_mps", track}, {"x_m", way}, {"y_m", level}};
+  CHECK_THAT(found(test::made_run(4, 0.01, seen)), Catch::StartsWith("run.csv: has no yaw_rad, and its tracks"));
+  runs::Run measured{{"t_s", "cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps"}, {}};
+  measured.values.resize(measured.columns.size());
+  for (int i = 0; i <= 36010; ++i) {
+    measured.values[0].push_back(0.1 * i);
+    for (std::size_t c = 1; c < measured.values.size(); ++c)
+      measured.values[c].push_back(0.2 * std::sin(0.01 * i + double(c)));
+  }
+  CHECK_THAT(found(measured), Catch::Contains("run.csv: lasts 3601 s, more than the 3600 s"));
+}
+
 TEST_CASE("Signs that are turned are refused, and sides that are exchanged") {
   CHECK_THAT(found(scaled(arc(), {"gyro_z_radps"}, -1)),
              Catch::Contains("yaw_rad: has the opposite sign of gyro_z_radps"));

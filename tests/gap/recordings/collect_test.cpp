@@ -86,4 +86,44 @@ TEST_CASE("Rows of a table have times since its first, and out of order they are
                     Catch::Contains("no such column"));
 }
 
+TEST_CASE("Two drives in one table are refused with the row at which the clock goes back, unless one is taken") {
+  // 0 to 3 s and again 0 to 1 s, ten rows a second: the second drive begins in row 32
+  Table table;
+  table.columns = {"t", "a"};
+  table.values.resize(2);
+  for (const int last : {30, 10})
+    for (int i = 0; i <= last; ++i) table.values[0].push_back(0.1 * i), table.values[1].push_back(last);
+  const Source source{"a", TimeFrom::header};
+  CHECK_THROWS_WITH(
+      collect(table, std::vector{source}, "t", 1, CollectOptions{}),
+      Catch::StartsWith("t goes back from 3.000 to 0.000 s in row 32 of the table") && Catch::Contains("--from"));
+  const Collected first = collect(table, std::vector{source}, "t", 1, {{}, 1.05, 3});
+  CHECK(first.samples.at(source).value == std::vector<double>(20, 30));
+}
+
+TEST_CASE("Rows of a table that are a little out of order are sorted, with a remark") {
+  Table table;
+  table.columns = {"t", "a"};
+  table.values = {{0, 0.25, 0.125, 0.375}, {1, 3, 2, 4}};
+  const Source source{"a", TimeFrom::header};
+  const Collected all = collect(table, std::vector{source}, "t", 1, CollectOptions{});
+  CHECK(all.samples.at(source).value == std::vector<double>{1, 2, 3, 4});
+  REQUIRE(all.remarks.size() == 1);
+  CHECK(all.remarks[0] == "a: 1 values come before the one before them, by up to 0.125 s, and are sorted");
+}
+
+TEST_CASE("Stamps of a topic that go back far are refused, with the time of recording as a way out") {
+  std::string records =
+      schema(1, "pkg/msg/Speed", "ros2msg", "std_msgs/Header header\nfloat64 speed\n") + channel(1, 1, "/speed", "cdr");
+  std::uint64_t now = 100;
+  for (const std::uint32_t sec : {50, 51, 52, 53, 54, 40, 41, 42})
+    records += message(1, now++ * kSecond, stamped(sec, 1));
+  const Recording recording = open_mcap(bytes_in_memory(head() + chunk(100 * kSecond, 107 * kSecond, records) + end()));
+  const Source by_header{"/speed/speed", TimeFrom::header}, by_log{"/speed/speed", TimeFrom::log};
+  CHECK_THROWS_WITH(collect(recording, std::vector{by_header}, CollectOptions{}, {}),
+                    Catch::StartsWith("/speed/speed: its time goes back from -46.000 to -60.000 s") &&
+                        Catch::Contains("time = \"log\""));
+  CHECK(collect(recording, std::vector{by_log}, CollectOptions{}, {}).samples.at(by_log).t_s.size() == 8);
+}
+
 }  // namespace collect_test

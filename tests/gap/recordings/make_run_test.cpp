@@ -210,4 +210,28 @@ TEST_CASE("Quaternions that are none are left out and counted") {
   CHECK(found.remarks[0].starts_with("1 poses are left out"));
 }
 
+TEST_CASE("A command that ended stops the tracks after the time that the mapping gives it, and a flipper stays") {
+  // The last command comes at 0.15 s: with 0.25 s in force there is none at 0.5 s and 0.75 s.
+  Collected collected;
+  collected.samples[{"v", TimeFrom::header}] = {{0.05, 0.15}, {0.2, 0.3}};
+  collected.samples[{"w", TimeFrom::header}] = {{0.05, 0.15}, {0, 0}};
+  collected.samples[{"i", TimeFrom::header}] = {{0, 0.25, 0.5, 0.75}, {1, 1, 1, 1}};
+  Mapping mapping;
+  mapping.rows = "track_left_a";
+  mapping.drives = {{true, "v", "w", 1, 1, 0.4, {TimeFrom::header, 0, Sampling::hold, 0.25}}};
+  mapping.columns = {{"track_left_a", "i", 1, {}},
+                     {"cmd_flipper_fl_rad", "v", 1, {TimeFrom::header, 0, Sampling::hold, 0.25}}};
+  const MadeRun made = make_run(mapping, collected, {});
+  CHECK(seen(values(made, "cmd_track_left_mps")) == std::vector<double>{-99, 0.3, 0, 0});
+  CHECK(seen(values(made, "cmd_track_right_mps")) == std::vector<double>{-99, 0.3, 0, 0});
+  CHECK(seen(values(made, "cmd_flipper_fl_rad")) == std::vector<double>{-99, 0.3, -99, -99});
+  CHECK(
+      made.remarks.at(0) ==
+      "cmd_track_left_mps: 0, to stop, in 2 rows that are more than max_gap_s = 0.25 s after the command before them");
+  // without one given, cells stay empty, and a replay repeats the command
+  mapping.drives[0].timing.max_gap_s.reset();
+  collected.samples[{"i", TimeFrom::header}] = {{0.25, 2}, {1, 1}};
+  CHECK(seen(values(make_run(mapping, collected, {}), "cmd_track_left_mps")) == std::vector<double>{0.3, -99});
+}
+
 }  // namespace make_run_test
