@@ -40,7 +40,7 @@ details { margin: 16px 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 12px; margin: 8px 0; }
 .moment { width: 524px; max-width: 100%; margin: 0; scroll-margin-top: 12px; } .moment p { margin: 2px 0; font-size: 13px; }
 .moment:target figcaption, h3:target { outline: 2px solid var(--real); outline-offset: 3px; }
-.moment code { font-size: 12px; overflow-wrap: anywhere; }
+.moment ul { font-size: 13px; padding-left: 18px; margin: 2px 0; } .moment code { font-size: 12px; overflow-wrap: anywhere; }
 .scene { border: 1px solid var(--frame); margin: 4px 0; touch-action: pan-y; cursor: grab; overflow: hidden; }
 .scene svg, .scene canvas { display: block; width: 100%; height: auto; aspect-ratio: 524 / 300; }
 .still.replaced, .scene canvas[hidden] { display: none; }
@@ -89,6 +89,11 @@ std::string contents(const Diagnosis& d, bool has_moments) {
 }  // namespace
 
 std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays, std::string_view report_folder) {
+  return diagnosis_page(d, overlays, report_folder, drawn_runs(d, overlays));
+}
+
+std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays, std::string_view report_folder,
+                           std::span<const ComparedRun> runs) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Gap diagnosis: {}</title>\n"
@@ -98,10 +103,10 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
       plot::escaped(d.observations.dataset.description));
   const std::vector<Moment> moments = moments_of(d, overlays);
   const std::string worst = moments_section(d, overlays, moments, report_folder);
-  html += answer_section(d) + contents(d, !worst.empty());
+  html += answer_section(d, runs, moments, overlays) + contents(d, !worst.empty());
   for (std::size_t s = 0; s < d.stages.size(); ++s) html += stage_section(d, s);
   html += where_section(d, overlays, moments) + worst + overlay_section(d, overlays) + next_section(d);
-  html += used_section(d, overlays) + method_section(d) + "</main>\n";
+  html += used_section(d, overlays, runs) + method_section(d) + "</main>\n";
   // scripts last: the page is whole without them
   for (const std::string_view script : {moment_player_script(), confusability_script()})
     html += fmt::format("<script>//<![CDATA[\n{}//]]></script>\n", script);
@@ -109,7 +114,8 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
 }
 
 std::string diagnosis_html(const Diagnosis& d, const std::filesystem::path& folder) {
-  return diagnosis_page(d, simulate_overlays(d), folder.string());
+  const std::vector<Overlay> overlays = simulate_overlays(d);
+  return diagnosis_page(d, overlays, folder.string(), compared_runs(d, overlays));
 }
 
 }  // namespace kenaf::gap::diagnose

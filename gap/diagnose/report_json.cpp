@@ -6,6 +6,7 @@
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/diagnose/report_words.hpp"
+#include "gap/diagnose/run_gap.hpp"
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -119,6 +120,34 @@ Json si_json(const std::vector<double>& values) {
   return result;
 }
 
+// Null if nothing was compared.
+Json moment_json(const RunMoment* moment) {
+  if (!moment) return nullptr;
+  const ChannelMoment& most = moment->channels.front();
+  const Channel& channel = diagnosis_channels()[most.channel];
+  return {{"at_s", number(moment->at_s)},
+          {"times_noise", number(moment->times_noise)},
+          {"channel", channel.column},
+          {"unit", channel.unit},
+          {"measured", number(most.measured)},
+          {"simulated", number(most.simulated)},
+          {"difference", number(most.difference())},
+          {"channel_times_noise", number(most.times_noise)}};
+}
+
+Json runs_json(const Diagnosis& d) {
+  Json runs = Json::array();
+  for (const ComparedRun& compared : compared_runs(d, {})) {
+    const Observation& run = d.observations.runs[compared.run];
+    runs.push_back({{"run", run.file},
+                    {"manoeuvre", run.manoeuvre},
+                    {"times_noise", number(compared.nominal.rms)},
+                    {"times_noise_corrected", compared.corrected ? number(compared.corrected->rms) : Json(nullptr)},
+                    {"worst", moment_json(compared.nominal.worst_moment())}});
+  }
+  return runs;
+}
+
 // `stage`: null if none was diagnosed.
 Json gap_json(const Diagnosis& d, const StageDiagnosis* stage) {
   const GapMeasure unknown, &gap = stage ? stage->gap : unknown,
@@ -216,6 +245,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (std::size_t s = 0; s < d.stages.size(); ++s) json["stages"].push_back(stage_json(d, s));
   const std::optional<std::size_t> main = main_stage(d);
   json["where"] = where_json(d, main);
+  json["runs"] = runs_json(d);
   json["effects"] = Json::array();
   for (const StageDiagnosis& stage : d.stages)
     for (const ModelEffect& effect : stage.decision.effects) {

@@ -33,11 +33,12 @@ std::string shown_name(const std::string& name_or_path) {
   return fs::path(name_or_path).stem().string();
 }
 
-void read_report(const fs::path& folder, Playback& playback) {
-  const fs::path file = folder / "report.json";
+void read_report(const fs::path& folder_or_file, Playback& playback) {
+  const bool is_file = fs::is_regular_file(folder_or_file);
+  const fs::path file = is_file ? folder_or_file : folder_or_file / "report.json", folder = file.parent_path();
   if (!fs::exists(file))
     throw std::runtime_error(
-        fmt::format("{}: there is no report.json; `kenaf-gap diagnose` writes one", folder.string()));
+        fmt::format("{}: there is no report.json; `kenaf-gap diagnose` writes one", folder_or_file.string()));
   try {
     playback.report = parse_reported_places(runs::read_whole_file(file));
   } catch (const std::runtime_error& error) {
@@ -54,6 +55,19 @@ void read_report(const fs::path& folder, Playback& playback) {
                                          file.string(), playback.name));
   if (fs::exists(folder / "robot.toml"))
     playback.robots.corrected = physics::load_robot((folder / "robot.toml").string());
+}
+
+// The run with the worst moment of all by the report; the first if it does not say.
+std::size_t worst_run(const Playback& playback) {
+  std::size_t worst = 0;
+  double most = 0;
+  for (std::size_t i = 0; playback.report && i < playback.runs.size(); ++i) {
+    const auto reported = playback.report->worst_of_run.find(playback.runs[i].entry.file);
+    if (reported == playback.report->worst_of_run.end() || reported->second.times_noise <= most) continue;
+    worst = i;
+    most = reported->second.times_noise;
+  }
+  return worst;
 }
 
 std::size_t find_run(const Playback& playback, const std::string& name) {
@@ -101,7 +115,10 @@ Playback load_playback(const PlaybackRequest& request) {
 
   if (!request.report.empty()) read_report(request.report, playback);
   playback.floors = floors_of(dataset.noise, playback.report ? &*playback.report : nullptr);
-  if (!request.run.empty()) playback.first = find_run(playback, request.run);
+  if (!request.run.empty())
+    playback.first = find_run(playback, request.run);
+  else if (!request.at_s)
+    playback.first = worst_run(playback);
   if (request.at_s) playback.at_s = checked_moment(playback.runs[playback.first], *request.at_s);
   return playback;
 }
@@ -117,7 +134,8 @@ PlayedRun prepare_run(const Playback& playback, std::size_t index) {
   const std::string path = (playback.folder / listed.entry.file).string();
   const runs::Run run = runs::read_run(path);
   if (run.row_count() == 0) throw runs::RunFileError(path + ": has no rows");
-  PlayedRun played = play_run(listed.entry, run, path, playback.robots, playback.worlds[listed.world], kMostShownTimes);
+  PlayedRun played = play_run(listed.entry, run, path, playback.robots, playback.worlds[listed.world], kMostShownTimes,
+                              playback.floors);
   if (playback.report) {
     played.marks = reported_phases_of(playback, listed);
     if (played.marks.empty()) played.notes.push_back("The report contains no phases of this run's manoeuvre.");

@@ -19,8 +19,9 @@ constexpr std::size_t kMostShownTimes = 20000;  // of a run: a browser draws so 
 
 struct PlaybackRequest {
   std::filesystem::path runs;    // a dataset's folder, or the CSV file of one run
-  std::filesystem::path report;  // folder that `kenaf-gap diagnose` wrote; empty: none
-  std::string run;               // file or manoeuvre of the run to begin with; empty: the first
+  std::filesystem::path report;  // folder that `kenaf-gap diagnose` wrote, or its report.json; empty: none
+  std::string run;  // file or manoeuvre of the run to begin with; empty: the one with the worst moment of all by the
+                    // report, unless at_s is given; else the first
   std::string robot, world;      // instead of the dataset's; empty: its own, for a single file "kenaf" and "flat"
   std::optional<double> at_s{};  // when to begin, from the first row of the run to begin with; none: at its start
 };
@@ -59,7 +60,7 @@ std::vector<ReportedPhase> reported_phases_of(const Playback& playback, const Li
 // longer be read.
 PlayedRun prepare_run(const Playback& playback, std::size_t run);
 
-// The playback protocol, kenaf-playback/1: HTTP as that of the live view (docs/live-view.md), with ?token= where one is
+// The playback protocol, kenaf-playback/2: HTTP as that of the live view (docs/live-view.md), with ?token= where one is
 // needed. SI units, radians, frames of runs (docs/logs.md); null is unknown.
 //
 //   /playback          200: JSON of playback_json(), all runs
@@ -67,7 +68,7 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //   /playback/N/scene  the world of that run, as /scene of the live view
 //
 // Keys of playback_json():
-//   format     "kenaf-playback/1"
+//   format     "kenaf-playback/2"
 //   name       of the folder or file; source: the dataset's
 //   first      number of the run to begin with; at_s: when to begin in it, s
 //   robot      {name, and the dimensions of a robot in the live view's `inventory`}
@@ -75,7 +76,8 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //   report     {verdict, named: names of effects, stage: whose gap the shares are of, or empty,
 //              largest_share: of a phase of any run, 0 to 1} or null
 //   runs       [{file, manoeuvre, world, rows: in the file, duration_s,
-//              share: of the gap in all runs, 0 to 1, only with a report}]
+//              share: of that stage's gap in all runs, 0 to 1, only with a report
+//              worst: {t_s, floors: rms over all channels}, only if the report has it}]
 //   notes      on all runs, sentences
 //
 // Keys of played_run_json():
@@ -93,10 +95,12 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 //   gaps      of each simulation: [{
 //               kind         "nominal", "corrected"
 //               span_s       over which differences are averaged
-//               differences  {column: simulated minus recorded in each span from the start, in the unit}
-//               floors       {column: rms of these in floors}
-//               worst        {t_s, floors: rms over all channels, column: that with most floors, difference: of it,
-//                            difference_floors} or null: the span with most floors over all channels
+//               differences  {column: recorded minus simulated in each span from the start, in the unit}
+//               difference_floors  {column: the same in floors, where a span with fewer samples has a larger one}
+//               floors       {column: rms of these}
+//               worst        {t_s, floors: rms over all channels, column: that with most floors, recorded, simulated,
+//                            difference: of it, difference_floors: without sign} or null: the span with most floors
+//                            over all channels (gap/diagnose/run_gap.hpp)
 //             }]
 //   phases    [{phase, from_s, to_s}], of this run
 //   marks     phases of the report, largest share first: [{manoeuvre, phase, run: file of the repeat whose times these

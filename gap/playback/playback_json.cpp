@@ -12,6 +12,10 @@ using live::JsonWriter;
 
 constexpr int kDigits = 4, kFloorDigits = 6;
 
+std::string_view column_of(std::size_t channel) {
+  return diagnose::diagnosis_channels()[channel].column;
+}
+
 void write_texts(JsonWriter& out, std::string_view key, const std::vector<std::string>& texts) {
   out.key(key).open('[');
   for (const std::string& text : texts) out.comma().text(text);
@@ -68,25 +72,34 @@ void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& 
   out.close(']');
 }
 
+void write_worst(JsonWriter& out, const diagnose::RunMoment& worst) {
+  const diagnose::ChannelMoment& most = worst.channels.front();
+  out.open('{').key("t_s").number(worst.at_s, kDigits).key("floors").number(worst.times_noise);
+  out.key("column").text(column_of(most.channel));
+  out.key("recorded").number(most.measured, kFloorDigits).key("simulated").number(most.simulated, kFloorDigits);
+  out.key("difference").number(most.difference(), kFloorDigits);
+  out.key("difference_floors").number(most.times_noise).close('}');
+}
+
 // What the simulations differ by, in means over spans, and where each is worst.
-void write_gaps(JsonWriter& out, const Playback& playback, const PlayedRun& played) {
+void write_gaps(JsonWriter& out, const PlayedRun& played) {
   out.key("gaps").open('[');
-  for (std::size_t i = 1; i < played.bodies.size(); ++i) {
-    const PlayedBody& body = played.bodies[i];
-    const RunGap gap = gap_of_run(played.bodies.front(), body, played.times_s, playback.floors);
-    out.comma().open('{').key("kind").text(body.kind).key("span_s").number(kSpan_s);
+  for (std::size_t i = 0; i < played.gaps.size(); ++i) {
+    const diagnose::RunGap& gap = played.gaps[i];
+    out.comma().open('{').key("kind").text(played.bodies[i + 1].kind).key("span_s").number(kSpan_s);
     out.key("differences").open('{');
-    for (const auto& [column, differences] : gap.differences) out.key(column).numbers(differences, kFloorDigits);
+    for (const diagnose::ChannelCourse& course : gap.channels)
+      out.key(column_of(course.channel)).numbers(course.difference, kFloorDigits);
+    out.close('}').key("difference_floors").open('{');
+    for (const diagnose::ChannelCourse& course : gap.channels)
+      out.key(column_of(course.channel)).numbers(course.times_noise, 3);
     out.close('}').key("floors").open('{');
-    for (const auto& [column, floors] : gap.floors) out.key(column).number(floors);
+    for (const diagnose::ChannelCourse& course : gap.channels) out.key(column_of(course.channel)).number(course.rms);
     out.close('}').key("worst");
-    if (gap.worst) {
-      out.open('{').key("t_s").number(gap.worst->t_s).key("floors").number(gap.worst->floors);
-      out.key("column").text(gap.worst->column).key("difference").number(gap.worst->difference, kFloorDigits);
-      out.key("difference_floors").number(gap.worst->difference_floors).close('}');
-    } else {
+    if (gap.worst)
+      write_worst(out, *gap.worst_moment());
+    else
       out.raw("null");
-    }
     out.close('}');
   }
   out.close(']');
@@ -97,7 +110,7 @@ void write_gaps(JsonWriter& out, const Playback& playback, const PlayedRun& play
 std::string playback_json(const Playback& playback) {
   // One object with the keys in the order of playback.hpp.
   JsonWriter out;
-  out.open('{').key("format").text("kenaf-playback/1").key("name").text(playback.name);
+  out.open('{').key("format").text("kenaf-playback/2").key("name").text(playback.name);
   out.key("source").text(playback.source).key("first").integer(playback.first);
   out.key("at_s").number(playback.at_s, kDigits);
   out.key("robot").open('{').key("name").text(playback.robots.nominal.name);
@@ -124,6 +137,15 @@ std::string playback_json(const Playback& playback) {
       double share = 0;
       for (const ReportedPhase& phase : reported_phases_of(playback, run)) share += phase.share;
       out.key("share").number(share, kDigits);
+      const auto worst = playback.report->worst_of_run.find(run.entry.file);
+      if (worst != playback.report->worst_of_run.end())
+        out.key("worst")
+            .open('{')
+            .key("t_s")
+            .number(worst->second.at_s, kDigits)
+            .key("floors")
+            .number(worst->second.times_noise)
+            .close('}');
     }
     out.close('}');
   }
@@ -143,7 +165,7 @@ std::string played_run_json(const Playback& playback, std::size_t index, const P
   for (const PlayedBody& body : played.bodies) write_body(out, body);
   out.close(']');
   write_channels(out, playback, played);
-  write_gaps(out, playback, played);
+  write_gaps(out, played);
   out.key("phases").open('[');
   for (const diagnose::PhaseSpan& phase : played.phases) {
     out.comma().open('{').key("phase").text(phase.name);

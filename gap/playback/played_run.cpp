@@ -118,8 +118,9 @@ void complete_pose(PlayedBody& body, const PlayedBody* nominal, double standing_
   }
 }
 
-std::vector<PlayedBody> simulate_bodies(const diagnose::Observation& observation, const PlayedRobots& robots,
-                                        const physics::WorldDescription& world, std::span<const double> times_s) {
+// The runs of the nominal and, if there is one, the corrected robot.
+std::vector<runs::Run> simulate_robots(const diagnose::Observation& observation, const PlayedRobots& robots,
+                                       const physics::WorldDescription& world) {
   // A set of one run, for the diagnosis' own predictor; both robots are simulated at the same time.
   diagnose::Observations one;
   one.robot = robots.nominal;
@@ -128,22 +129,21 @@ std::vector<PlayedBody> simulate_bodies(const diagnose::Observation& observation
   const diagnose::ComparedFeatures no_features;
   const diagnose::Predictor predictor(one, no_features, {}, 1);
   std::vector<diagnose::Variation> variations{predictor.unvaried()};
-  std::vector<PlayedBody> bodies(robots.corrected ? 2 : 1);
+  std::vector<runs::Run> simulated(robots.corrected ? 2 : 1);
   if (robots.corrected) {
     variations.push_back(predictor.unvaried());
     variations.back().robot = *robots.corrected;
   }
-  for_each_job(bodies.size(), 0, [&](std::size_t i) {
-    bodies[i] = body_of(i == 0 ? "nominal" : "corrected", predictor.simulate(0, variations[i]), times_s);
-  });
-  return bodies;
+  for_each_job(simulated.size(), 0, [&](std::size_t i) { simulated[i] = predictor.simulate(0, variations[i]); });
+  return simulated;
 }
 
 }  // namespace
 
 PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const std::string& path,
-                   const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times) {
-  PlayedRun played{entry, run.row_count(), shown_times(run.column("t_s"), most_times), {}, {}, {}, {}};
+                   const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times,
+                   const std::map<std::string, Floor>& floors) {
+  PlayedRun played{entry, run.row_count(), shown_times(run.column("t_s"), most_times), {}, {}, {}, {}, {}};
 
   // The recorded robot.
   PoseFrom from = PoseFrom::nothing;
@@ -159,8 +159,11 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   if (played.times_s.back() <= rollout::kLongestManoeuvre_s) played.phases = diagnose::phases_of(observation);
   try {
     observation = diagnose::observation_of(entry, posed, path);
-    for (PlayedBody& body : simulate_bodies(observation, robots, world, played.times_s))
-      played.bodies.push_back(std::move(body));
+    for (const runs::Run& simulated : simulate_robots(observation, robots, world)) {
+      played.bodies.push_back(body_of(played.gaps.empty() ? "nominal" : "corrected", simulated, played.times_s));
+      // with what was measured, not what was reckoned from it
+      played.gaps.push_back(gap_of_run(run, simulated, floors));
+    }
   } catch (const std::exception& error) {
     played.notes.push_back(fmt::format("Not simulated: {}.", error.what()));
   }

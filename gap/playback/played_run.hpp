@@ -13,6 +13,7 @@
 #include "formats/runs/dataset.hpp"
 #include "gap/diagnose/phases.hpp"
 #include "gap/playback/reported_places.hpp"
+#include "gap/playback/run_gap.hpp"
 #include "physics/effects.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
@@ -34,9 +35,10 @@ struct PlayedBody {
 
 struct PlayedRun {
   runs::DatasetRun entry;
-  std::size_t rows;                // in the file
-  std::vector<double> times_s;     // from 0
-  std::vector<PlayedBody> bodies;  // the recorded one first
+  std::size_t rows;                    // in the file
+  std::vector<double> times_s;         // from 0
+  std::vector<PlayedBody> bodies;      // the recorded one first
+  std::vector<diagnose::RunGap> gaps;  // of each body but the recorded one
   std::vector<diagnose::PhaseSpan> phases;
   std::vector<ReportedPhase> marks;  // of the report, largest share first
   std::vector<std::string> notes;    // unexpected facts, in sentences
@@ -50,8 +52,9 @@ struct PlayedRobots {
 
 // Simulates the run with the nominal and, if there is one, the corrected robot, as a diagnosis does: the same commands
 // from the same start, without noise. `path` names the file in notes. Shows at most `most_times` times. A run that
-// cannot be simulated is shown alone, with a note.
+// cannot be simulated is shown alone, with a note. `floors`: as floors_of() returns them.
 PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const std::string& path,
-                   const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times);
+                   const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times,
+                   const std::map<std::string, Floor>& floors);
 
 }  // namespace kenaf::gap::playback

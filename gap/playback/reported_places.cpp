@@ -29,6 +29,13 @@ void add_floors(std::map<std::string, double>& floors, const PlacesJson& where) 
   }
 }
 
+void add_worst(std::map<std::string, ReportedWorst>& worst_of_run, const std::string& run, const PlacesJson& worst) {
+  if (!worst.at("at_s").is_number() || !worst.at("times_noise").is_number()) return;
+  const ReportedWorst reported{worst.at("at_s"), worst.at("times_noise")};
+  if (reported.at_s >= 0 && reported.times_noise >= 0 && std::isfinite(reported.at_s + reported.times_noise))
+    worst_of_run[run] = reported;
+}
+
 ReportedPhase phase_in(const PlacesJson& json) {
   ReportedPhase phase{json.at("manoeuvre"), json.at("phase"), json.value("run", ""),
                       json.at("from_s"),    json.at("to_s"),  share_in(json.at("share"))};
@@ -58,6 +65,10 @@ ReportedPlaces parse_reported_places(std::string_view report_json) try {
       if (const auto of_stage = stage.find("where"); of_stage != stage.end())
         add_floors(places.channel_floor, *of_stage);
   add_floors(places.channel_floor, where);
+  if (const auto runs = json.find("runs"); runs != json.end())
+    for (const PlacesJson& run : *runs)
+      if (const auto worst = run.find("worst"); worst != run.end() && worst->is_object())
+        add_worst(places.worst_of_run, run.at("run"), *worst);
   return places;
 } catch (const std::exception& error) {
   throw std::runtime_error(fmt::format("is not the report of a diagnosis: {}", error.what()));

@@ -17,6 +17,12 @@ struct ReportedPhase {
   double share;         // of the gap, from 0 to 1
 };
 
+// The worst moment of a run, by the report.
+struct ReportedWorst {
+  double at_s;
+  double times_noise;  // rms over all channels
+};
+
 struct ReportedPlaces {
   std::string verdict;
   std::vector<std::string> named;
@@ -25,6 +31,7 @@ struct ReportedPlaces {
   std::map<std::string, double> channel_share;  // by column
   // By column, in its unit, 1 sigma of a mean over 0.25 s, above 0: of every stage's channels, not of one stage alone.
   std::map<std::string, double> channel_floor;
+  std::map<std::string, ReportedWorst> worst_of_run;  // by file; empty in reports that do not have it
 };
 
 // Throws std::runtime_error with words for the user if `report_json` has neither format kenaf-gap-report/1 nor /2. In

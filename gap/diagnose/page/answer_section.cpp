@@ -17,6 +17,7 @@ namespace {
 using plot::escaped;
 
 constexpr std::size_t kMostLeftSaid = 2;  // per stage; its section has all
+constexpr std::size_t kMostWorsened = 3;  // runs listed
 constexpr double kWorthSaying = 0.02;     // of the whole gap: the table suffices for smaller stages without a name
 
 std::string_view stage_meaning(Passage passage) {
@@ -224,13 +225,62 @@ std::string what_next(const Diagnosis& d) {
   return bullets(items);
 }
 
+// The worst moment of all, with its figures; empty if nothing was compared or there is no gap.
+std::string worst_moment(const Diagnosis& d, std::span<const ComparedRun> runs, std::span<const Moment> moments,
+                         std::span<const Overlay> overlays) {
+  const ComparedRun* worst = worst_run(runs);
+  if (!worst || stages_with_gap(d).empty()) return {};
+  const RunMoment& at = *worst->nominal.worst_moment();
+  const Observation& run = d.observations.runs[worst->run];
+  std::string place = escaped(fmt::format("{} of {} ({})", time_in_words(at.at_s), run.file, run.manoeuvre));
+  for (std::size_t i = 0; i < moments.size(); ++i)
+    if (overlays[moments[i].overlay].run == worst->run && moments[i].at_s == at.at_s)
+      place = fmt::format("<a href=\"#{}\">{}</a>", moment_id(i), place);
+  return fmt::format(
+      "<p>At {} the nominal simulation is <b>{}</b> from the robot, rms of all channels (1: noise alone). "
+      "It is most off in {}. Differences are measured minus simulated.</p>",
+      place, times_noise_in_words(at.times_noise), escaped(in_words(at.channels.front())));
+}
+
 std::string answer(std::string_view question, std::string_view html) {
-  return fmt::format("<dt>{}</dt>\n<dd>{}</dd>\n", question, html);
+  return html.empty() ? "" : fmt::format("<dt>{}</dt>\n<dd>{}</dd>\n", question, html);
 }
 
 }  // namespace
 
-std::string answer_section(const Diagnosis& d) {
+std::vector<std::string> worsened_in_words(const Diagnosis& d, std::span<const ComparedRun> runs) {
+  const std::vector<const ComparedRun*> worsened = worsened_runs(runs);
+  std::vector<std::string> words;
+  for (const ComparedRun* run : worsened) {
+    if (words.size() == kMostWorsened) {
+      words.push_back(fmt::format("The correction worsens {} more runs.", worsened.size() - words.size()));
+      break;
+    }
+    // the channel whose squares grow most
+    const ChannelCourse* most = nullptr;
+    double most_growth = 0, most_before = 0;
+    for (const ChannelCourse& after : run->corrected->channels) {
+      const auto before = std::ranges::find(run->nominal.channels, after.channel, &ChannelCourse::channel);
+      if (before == run->nominal.channels.end()) continue;
+      const double growth = after.rms * after.rms - before->rms * before->rms;
+      if (growth > most_growth) most = &after, most_growth = growth, most_before = before->rms;
+    }
+    const Observation& observed = d.observations.runs[run->run];
+    std::string text = fmt::format(
+        "The correction worsens {} ({}): over the whole run the corrected simulation is {} off, rms of all channels, "
+        "the nominal one {}",
+        observed.file, observed.manoeuvre, times_noise_in_words(run->corrected->rms),
+        times_noise_in_words(run->nominal.rms));
+    if (most)
+      text += fmt::format("; most in {}, {} instead of {}", diagnosis_channels()[most->channel].column,
+                          times_noise_in_words(most->rms), times_noise_in_words(most_before));
+    words.push_back(text + ".");
+  }
+  return words;
+}
+
+std::string answer_section(const Diagnosis& d, std::span<const ComparedRun> runs, std::span<const Moment> moments,
+                           std::span<const Overlay> overlays) {
   const bool finished = d.interrupted.empty();
   std::string html = fmt::format("<section class=\"verdict\">\n<p class=\"word\">{}</p>\n<h1>{}</h1>\n",
                                  finished ? verdict_name(d.verdict) : "unfinished", escaped(headline(d)));
@@ -240,10 +290,11 @@ std::string answer_section(const Diagnosis& d) {
         "The diagnosis was interrupted. This page shows the results up to then; there is no verdict, and a missing "
         "result does not mean that nothing was found. Run the diagnosis again to its end.");
   if (!d.stages.empty()) html += stages_at_a_glance(d);
+  for (const std::string& words : worsened_in_words(d, runs)) html += paragraph(words, "warning");
   if (finished && !d.stages.empty())
     html += "<dl>\n" + answer("Where is the gap?", where_is_it(d)) + answer("Which effects?", which_effects(d)) +
-            answer("How much?", how_much(d)) + answer("What is left?", what_is_left(d)) +
-            answer("What next?", what_next(d)) + "</dl>\n";
+            answer("How much?", how_much(d)) + answer("Where is it worst?", worst_moment(d, runs, moments, overlays)) +
+            answer("What is left?", what_is_left(d)) + answer("What next?", what_next(d)) + "</dl>\n";
   return html + "</section>\n";
 }
 

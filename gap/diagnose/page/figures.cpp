@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "gap/compare/world_section.hpp"
@@ -96,36 +95,12 @@ Chart place_chart(const Diagnosis& d, const Overlay& overlay, std::vector<Line> 
   return chart;
 }
 
-Line residual_line(const FeatureMap& map, const Eigen::VectorXd& residual, const Eigen::VectorXd& sigma) {
-  struct Sum {
-    double squares = 0;
-    int bins = 0;
-  };
-  std::map<std::size_t, Sum> of_span;
-  for (std::size_t b = 0; b < map.bins().size(); ++b) {
-    const auto i = static_cast<Eigen::Index>(b);
-    if (sigma[i] <= 0) continue;
-    Sum& sum = of_span[map.bins()[b].span];
-    sum.squares += residual[i] * residual[i] / (sigma[i] * sigma[i]);
-    ++sum.bins;
-  }
+// All channels together over time.
+Line residual_line(const RunGap& gap) {
   Line line;
-  for (const auto& [span, sum] : of_span)
-    line.points.emplace_back((static_cast<double>(span) + 0.5) * map.span_s(), std::sqrt(sum.squares / sum.bins));
+  for (const RunMoment& moment : gap.moments) line.points.emplace_back(moment.at_s, moment.times_noise);
   line.points = plot::envelope(line.points, kColumns);
   return line;
-}
-
-// Noise of each bin of a run's FeatureMap, from the first stage that compares it; 0 if none does.
-Eigen::VectorXd noise_of_run(const Diagnosis& d, std::size_t run) {
-  Eigen::VectorXd sigma = Eigen::VectorXd::Zero(std::ssize(d.features.maps[run].bins()));
-  for (auto stage = d.stages.rbegin(); stage != d.stages.rend(); ++stage) {
-    if (run >= stage->nominal_floor.sigma_of_bin.size()) continue;
-    const std::vector<Eigen::Index>& rows = d.features.of(stage->passage)[run].rows;
-    const Eigen::VectorXd& of_bin = stage->nominal_floor.sigma_of_bin[run];
-    for (std::size_t b = 0; b < rows.size(); ++b) sigma[rows[b]] = of_bin[static_cast<Eigen::Index>(b)];
-  }
-  return sigma;
 }
 
 // Where the robot was in the middle of a phase.
@@ -172,18 +147,17 @@ Chart residual_figure(const Diagnosis& d, const Overlay& overlay) {
   Chart chart;
   chart.title = "Residual over time, all channels";
   chart.x_label = "t (s)";
-  chart.y_label = "rms (noise units)";
+  chart.y_label = "rms (\u00d7 noise)";
   chart.width_px = kHalf_px;
   chart.height_px = kChannelHeight_px;
   chart.include = {{0, 0}};
 
   // a run that was not compared has an empty chart
-  if (overlay.run >= d.features.maps.size()) return chart;
-  const FeatureMap& map = d.features.maps[overlay.run];
-  const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
+  const std::vector<ComparedRun> compared = drawn_runs(d, std::span(&overlay, 1));
+  if (compared.empty()) return chart;
 
-  // rms over channels per span, in units of noise: 1 is noise alone
-  Line before = residual_line(map, map.measured() - map.of(overlay.nominal), sigma);
+  // rms over channels per span, in times the noise: 1 is noise alone
+  Line before = residual_line(compared.front().nominal);
   before.ink = Ink::sim;
   before.stroke = Stroke::dashed;
   before.legend = "before";
@@ -192,8 +166,8 @@ Chart residual_figure(const Diagnosis& d, const Overlay& overlay) {
   chart.lines = {{{{0, 1}, {end_s, 1}}, Ink::faint, Stroke::hair, "noise: 1"}, std::move(before)};
 
   // the same after correction
-  if (overlay.corrected) {
-    Line after = residual_line(map, map.measured() - map.of(*overlay.corrected), sigma);
+  if (compared.front().corrected) {
+    Line after = residual_line(*compared.front().corrected);
     after.ink = Ink::third;
     after.legend = "after";
     chart.lines.push_back(std::move(after));
@@ -228,7 +202,7 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
   };
 
   // the band of noise, then the residual before and after correction
-  const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
+  const Eigen::VectorXd sigma = noise_of_bins(map, floors_of(d));
   chart.lines = {line_of(sigma, Ink::faint, Stroke::hair, "noise, 1 sigma"),
                  line_of(-sigma, Ink::faint, Stroke::hair, ""),
                  line_of(map.measured() - map.of(overlay.nominal), Ink::sim, Stroke::dashed, "before")};

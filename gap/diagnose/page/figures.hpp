@@ -22,7 +22,7 @@ plot::Chart path_figure(const Diagnosis& d, const Overlay& overlay);
 // Its residual, as means over short spans, in the channel's unit.
 plot::Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::size_t index);
 
-// The rms of all channels over time, in noise units.
+// The rms of all channels over time, in times the noise (run_gap.hpp).
 plot::Chart residual_figure(const Diagnosis& d, const Overlay& overlay);
 
 // The path with the gap of each phase of a stage at the place of the phase, before (rings) and after (discs); each

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kMostPlots = 6;  // chosen: three rows of two
 constexpr double kDot_px = 2;
 constexpr double kMargin = 0.02;  // of the points' extent
+// Fitted less their mean in the run, so that their axis has negative times and places.
+constexpr std::string_view kFromMean[] = {"time since the start", "place along x", "place along y"};
 
 std::string with_unit(std::string_view text, std::string_view unit) {
   return unit.empty() ? std::string(text) : fmt::format("{} ({})", text, unit);
@@ -23,9 +25,14 @@ std::string with_unit(std::string_view text, std::string_view unit) {
 
 std::string left_over_plot(const Dependence& d) {
   const bool by_run = d.on == "run", constant = d.on == "constant";
+  const bool from_mean = std::ranges::find(kFromMean, d.on) != std::end(kFromMean);
   plot::Chart chart;
-  chart.title = fmt::format("{} over {}: {} of what is left", d.channel, by_run ? "runs" : d.on, percent(d.share));
-  chart.x_label = with_unit(by_run ? "number of the run" : constant ? "simulated " + d.channel : d.on, d.on_unit);
+  chart.title = fmt::format("{} over {}: {} of it", d.channel, by_run ? "runs" : d.on, percent(d.share));
+  chart.x_label = with_unit(by_run      ? "number of the run"
+                            : constant  ? "simulated " + d.channel
+                            : from_mean ? d.on + ", less its mean in the run"
+                                        : d.on,
+                            d.on_unit);
   chart.y_label = by_run ? with_unit(d.channel, d.unit) : with_unit("measured minus simulated", d.unit);
   chart.width_px = kHalf_px;
   if (d.points.empty()) return to_svg(chart);

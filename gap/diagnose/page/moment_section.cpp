@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kNear_m = 2.5;              // how much of the world is seen
 constexpr std::size_t kMostMeshFaces = 800;  // some 30 kB
+constexpr std::size_t kMostNamed = 3;        // named below a moment
 
 // "42 mm and 7.2 degrees apart".
 std::string apart_in_words(const RobotPose& a, const RobotPose& b) {
@@ -36,24 +38,42 @@ std::string how_far(const Moment& moment) {
   return words.empty() ? "The nominal robot's pose is not known here." : words + ".";
 }
 
+// The channels in which they differ most.
+std::string most_off(const Moment& moment) {
+  std::string items;
+  for (const ChannelMoment& channel :
+       std::span(moment.gap.channels).first(std::min(kMostNamed, moment.gap.channels.size())))
+    items += fmt::format("<li>{}</li>\n", plot::escaped(in_words(channel)));
+  return fmt::format("<ul>\n{}</ul>\n", items);
+}
+
 std::string moment_figure(const Diagnosis& d, const Moment& moment, std::size_t index, const RobotFaces& robot,
                           const Overlay& overlay, std::string_view report_folder) {
   const StageDiagnosis& stage = d.stages[moment.stage];
-  const PhaseGap& phase = stage.where.phases[moment.phase];
+  const PhaseGap* phase = moment.phase ? &stage.where.phases[*moment.phase] : nullptr;
   const Observation& run = d.observations.runs[overlay.run];
   WorldFaces world;
   if (run.world < d.observations.worlds.size())
     world = faces_near(d.observations.worlds[run.world], moment.bodies.front().poses[moment.now]->p_WB_m, kNear_m,
                        kMostMeshFaces);
-  const std::string title = fmt::format("{}, {}, at {:.2f} s", group_title(d, moment.group), phase.phase, moment.at_s);
+  const std::string title = fmt::format("{}{}, at {}", group_title(d, moment.group),
+                                        phase ? fmt::format(", {}", phase->phase) : "", time_in_words(moment.at_s));
 
-  // what and how large, the picture, and how to see the rest
+  // how large, where, the picture, in which channels, and how to see the rest
+  std::string how_large =
+      fmt::format("of {}: {}, rms of all channels", run.file, times_noise_in_words(moment.gap.times_noise));
+  if (index == 0)
+    how_large += ", the worst moment of the runs drawn here";
+  else if (moment.is_worst_of_run)
+    how_large += ", the worst moment of this run";
+  if (phase)
+    how_large += fmt::format(". The phase has {} of the gap {}", percent(phase->share), from_to(stage.passage));
   return fmt::format(
-      "<figure class=\"moment\" id=\"{}\" data-moment=\"{}\">\n<figcaption><b>{}</b>: {} of the gap {}</figcaption>\n"
-      "<div class=\"scene\">{}</div>\n{}<p><code>{}</code></p>\n</figure>\n",
-      moment_id(index), plot::escaped(moment_data(moment, robot, world)), plot::escaped(title), percent(phase.share),
-      from_to(stage.passage), moment_still(moment, robot, world, title), paragraph(how_far(moment), "soft"),
-      plot::escaped(play_command(d, run.file, moment.at_s, report_folder)));
+      "<figure class=\"moment\" id=\"{}\" data-moment=\"{}\">\n<figcaption><b>{}</b> {}</figcaption>\n"
+      "<div class=\"scene\">{}</div>\n{}{}<p><code>{}</code></p>\n</figure>\n",
+      moment_id(index), plot::escaped(moment_data(moment, robot, world)), plot::escaped(title),
+      plot::escaped(how_large), moment_still(moment, robot, world, title), most_off(moment),
+      paragraph(how_far(moment), "soft"), plot::escaped(play_command(d, run.file, moment.at_s, report_folder)));
 }
 
 }  // namespace
@@ -67,8 +87,13 @@ std::string moments_section(const Diagnosis& d, std::span<const Overlay> overlay
                       "These runs have no measured pose (x_m, y_m, yaw_rad), so that none is drawn here; kenaf-gap "
                       "play draws them by dead reckoning.");
   html += paragraph(
-      "In the phases with the most of the gap, the quarter of a second in which the stage differs most. "
-      "Solid: the real robot; translucent orange: the nominal simulation; green: the corrected one. The "
+      "The quarters of a second in which the nominal simulation is farthest from the robot: the worst moment of all, "
+      "and the worst ones in the phases with most of the gap. 12 \u00d7 noise is a difference of twelve times the "
+      "noise, "
+      "1 is what noise alone does. All channels: root of the mean square of each; below the picture those that differ "
+      "most, means of that quarter of a second, with the difference measured minus simulated. kenaf-gap play has the "
+      "same worst moment. Solid: the real robot; translucent orange: the nominal simulation; green: the corrected one. "
+      "The "
       "command shows the whole run, with curves, in a browser; give it in the folder in which the "
       "diagnosis ran.",
       "soft");

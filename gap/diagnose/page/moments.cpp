@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/report_words.hpp"
@@ -20,38 +19,13 @@ constexpr double kAround_s = 1.5;       // shown before and after it
 constexpr double kBeyondEnds_s = 0.5;   // a course is known for so long before its first value and after its last
 constexpr double kNoPlace = std::numeric_limits<double>::quiet_NaN();
 
-// The rms over a stage's channels in each span of a run, in noise units.
-std::map<std::size_t, double> stage_residual(const Diagnosis& d, const StageDiagnosis& stage, std::size_t run) {
-  struct Sum {
-    double squares = 0;
-    int bins = 0;
-  };
-  std::map<std::size_t, Sum> sums;
-  const std::vector<Bin>& bins = d.features.of(stage.passage)[run].bins;
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    const auto i = static_cast<Eigen::Index>(b);
-    const double sigma = stage.nominal_floor.sigma_of_bin[run][i];
-    if (sigma <= 0) continue;
-    Sum& sum = sums[bins[b].span];
-    sum.squares += std::pow(stage.residuals[run][i] / sigma, 2);
-    ++sum.bins;
-  }
-  std::map<std::size_t, double> rms;
-  for (const auto& [span, sum] : sums) rms[span] = std::sqrt(sum.squares / sum.bins);
-  return rms;
-}
-
-// The middle of the span of a phase in which the stage differs most; the phase's middle if nothing is known there.
-double worst_time_s(const Diagnosis& d, const StageDiagnosis& stage, std::size_t run, const PhaseGap& phase) {
-  double worst_s = (phase.from_s + phase.to_s) / 2, most = -1;
-  const bool is_known =
-      run < stage.residuals.size() && stage.residuals[run].size() > 0 && run < stage.nominal_floor.sigma_of_bin.size();
-  if (!is_known) return worst_s;
-  for (const auto& [span, rms] : stage_residual(d, stage, run)) {
-    const double middle_s = (static_cast<double>(span) + 0.5) * d.options.span_s;
-    if (middle_s >= phase.from_s && middle_s <= phase.to_s && rms > most) most = rms, worst_s = middle_s;
-  }
-  return worst_s;
+// The worst moment in a phase; null if nothing was compared there.
+const RunMoment* worst_within(const RunGap& gap, const PhaseGap& phase) {
+  const RunMoment* worst = nullptr;
+  for (const RunMoment& moment : gap.moments)
+    if (moment.at_s >= phase.from_s && moment.at_s <= phase.to_s && (!worst || moment.times_noise > worst->times_noise))
+      worst = &moment;
+  return worst;
 }
 
 // A column at any time: linear between measured values, NaN in long gaps; constant shortly beyond the ends.
@@ -142,33 +116,68 @@ std::string shell_word(std::string_view text, bool is_path) {
 }  // namespace
 
 std::vector<Moment> moments_of(const Diagnosis& d, std::span<const Overlay> overlays) {
+  const std::vector<std::size_t> stages = stages_with_gap(d);
+  const std::vector<ComparedRun> runs = drawn_runs(d, overlays);
+  const ComparedRun* worst = worst_run(runs);
+  if (stages.empty() || !worst) return {};
+
   // phases of all stages with a gap, by their share of the whole
   struct RankedPhase {
     std::size_t stage, phase;
     double share;
   };
   std::vector<RankedPhase> places;
-  for (const std::size_t s : stages_with_gap(d))
+  for (const std::size_t s : stages)
     for (std::size_t p = 0; p < d.stages[s].where.phases.size(); ++p)
       if (const double share = share_of_gap(d, s) * d.stages[s].where.phases[p].share; share > 0)
         places.push_back({s, p, share});
   std::ranges::stable_sort(places, std::ranges::greater{}, &RankedPhase::share);
 
   std::vector<Moment> moments;
+  const auto add = [&](std::size_t s, std::optional<std::size_t> p, const ComparedRun& run, const RunMoment& at) {
+    const auto overlay = std::ranges::find(overlays, run.run, &Overlay::run);
+    const bool is_known = std::ranges::any_of(
+        moments, [&](const Moment& other) { return overlays[other.overlay].run == run.run && other.at_s == at.at_s; });
+    if (is_known) return;
+    Moment moment{s,
+                  p,
+                  static_cast<std::size_t>(overlay - overlays.begin()),
+                  overlay->group,
+                  at.at_s,
+                  at,
+                  &at == run.nominal.worst_moment(),
+                  {},
+                  {},
+                  0};
+    if (fill_moment(d, *overlay, moment)) moments.push_back(std::move(moment));
+  };
+
+  // the worst of all, in the phase that has the largest share there
+  const RunMoment& most = *worst->nominal.worst_moment();
+  const auto around = std::ranges::find_if(places, [&](const RankedPhase& place) {
+    const PhaseGap& phase = d.stages[place.stage].where.phases[place.phase];
+    return overlays[static_cast<std::size_t>(std::ranges::find(overlays, worst->run, &Overlay::run) - overlays.begin())]
+                   .group == phase.group &&
+           most.at_s >= phase.from_s && most.at_s <= phase.to_s;
+  });
+  if (around != places.end())
+    add(around->stage, around->phase, *worst, most);
+  else
+    add(stages.front(), std::nullopt, *worst, most);
+
+  // those of the other phases
+  const bool has_worst = !moments.empty();
   for (const RankedPhase& place : places) {
-    if (moments.size() == kMostMoments || (!moments.empty() && place.share < kWorthAMoment)) break;
-    const StageDiagnosis& stage = d.stages[place.stage];
-    const PhaseGap& phase = stage.where.phases[place.phase];
+    if (moments.size() == kMostMoments || (moments.size() > (has_worst ? 1 : 0) && place.share < kWorthAMoment)) break;
+    const PhaseGap& phase = d.stages[place.stage].where.phases[place.phase];
     const auto overlay = std::ranges::find(overlays, phase.group, &Overlay::group);
-    if (overlay == overlays.end() || d.observations.runs[overlay->run].run.row_count() == 0) continue;
-    Moment moment{
-        place.stage, place.phase, static_cast<std::size_t>(overlay - overlays.begin()), phase.group, 0, {}, {}, 0};
-    moment.at_s = worst_time_s(d, stage, overlay->run, phase);
-    const bool is_known = std::ranges::any_of(moments, [&](const Moment& other) {
-      return other.overlay == moment.overlay && std::abs(other.at_s - moment.at_s) < d.options.span_s / 2;
-    });
-    if (!is_known && fill_moment(d, *overlay, moment)) moments.push_back(std::move(moment));
+    if (overlay == overlays.end()) continue;
+    const auto run = std::ranges::find(runs, overlay->run, &ComparedRun::run);
+    if (run == runs.end()) continue;
+    if (const RunMoment* at = worst_within(run->nominal, phase)) add(place.stage, place.phase, *run, *at);
   }
+  std::ranges::stable_sort(moments, std::ranges::greater{},
+                           [](const Moment& moment) { return moment.gap.times_noise; });
   return moments;
 }
 
@@ -184,8 +193,8 @@ std::string link_to_phase(const Diagnosis& d, std::span<const Moment> moments, s
                           const PhaseGap& phase) {
   // phases before and after correction begin alike
   auto found = std::ranges::find_if(moments, [&](const Moment& moment) {
-    return moment.stage == stage && moment.group == phase.group &&
-           d.stages[stage].where.phases[moment.phase].from_s == phase.from_s;
+    return moment.stage == stage && moment.group == phase.group && moment.phase &&
+           d.stages[stage].where.phases[*moment.phase].from_s == phase.from_s;
   });
   if (found == moments.end())
     found = std::ranges::find_if(moments, [&](const Moment& moment) {
@@ -202,7 +211,8 @@ std::string play_command(const Diagnosis& d, std::string_view file, double at_s,
   if (!report_folder.empty()) command += " --report " + shell_word(report_folder, true);
   if (!d.options.robot.empty()) command += " --robot " + shell_word(d.options.robot, true);
   if (!d.options.world.empty()) command += " --world " + shell_word(d.options.world, true);
-  return command + fmt::format(" --run {} --at {:.2f}", shell_word(file, false), at_s);
+  const std::string at = time_in_words(at_s);
+  return command + fmt::format(" --run {} --at {}", shell_word(file, false), at.substr(0, at.find(' ')));
 }
 
 }  // namespace kenaf::gap::diagnose

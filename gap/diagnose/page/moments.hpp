@@ -1,5 +1,5 @@
-// The moments that the page shows in 3D: in the phases with most of the gap, the quarter of a second in which the stage
-// differs most.
+// The moments that the page shows in 3D: the worst moment of all (run_gap.hpp), and the worst ones in the phases with
+// most of the gap.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gap/diagnose/page/overlays.hpp"
+#include "gap/diagnose/run_gap.hpp"
 
 namespace kenaf::gap::diagnose {
 
@@ -29,18 +30,21 @@ struct MomentBody {
 };
 
 struct Moment {
-  std::size_t stage;    // index into Diagnosis::stages
-  std::size_t phase;    // index into its where.phases
-  std::size_t overlay;  // index into the overlays
-  std::size_t group;    // of repeats, the overlay's
+  std::size_t stage;                 // index into Diagnosis::stages
+  std::optional<std::size_t> phase;  // index into its where.phases; none: no phase with a part of the gap
+  std::size_t overlay;               // index into the overlays
+  std::size_t group;                 // of repeats, the overlay's
   double at_s;
+  RunMoment gap;                   // how far the nominal simulation is from the run then
+  bool is_worst_of_run;            // no other moment of this run is worse
   std::vector<double> times_s;     // every kPicture_s, of a few seconds around it, within the run
   std::vector<MomentBody> bodies;  // the real one first
   std::size_t now;                 // index into times_s of at_s, or next to it
 };
 
-// The moments of the phases with the largest shares of the whole gap, largest first, at most as many as a page has room
-// for; of two stages with the same moment the one with the larger share. None of a run without a measured pose.
+// The worst moment of the drawn runs, and of each of the phases with the largest shares of the whole gap, most times
+// the noise first, at most as many as a page has room for; of two phases with the same moment the one with the larger
+// share. None of a run without a measured pose.
 std::vector<Moment> moments_of(const Diagnosis& d, std::span<const Overlay> overlays);
 
 // "moment-1", "run-1": anchors in the page, of a moment and of a manoeuvre's run.

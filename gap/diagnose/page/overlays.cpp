@@ -100,18 +100,23 @@ void choose_channels(const Diagnosis& d, std::vector<Overlay>& overlays) {
   }
 }
 
+std::optional<Variation> corrected_robot(const Diagnosis& d, const Predictor& predictor) {
+  Variation corrected = predictor.unvaried();
+  const Settings found = corrections(d);
+  corrected.robot = with_settings(std::move(corrected.robot), d.candidates, found);
+  if (found.empty() || !candidates::why_impossible(corrected.robot).empty()) return std::nullopt;
+  return corrected;
+}
+
 std::vector<Overlay> simulate_overlays(const Diagnosis& d) {
   std::vector<Overlay> overlays;
   for (const std::size_t group : shown_groups(d))
     overlays.push_back({group, representative(d.observations, d.repeats[group]), {}, {}, {}, std::nullopt});
   const Predictor predictor(d.observations, d.features, d.repeats, 1);
-  Variation corrected = predictor.unvaried();
-  const Settings found = corrections(d);
-  corrected.robot = with_settings(std::move(corrected.robot), d.candidates, found);
-  const bool has_model = !found.empty() && candidates::why_impossible(corrected.robot).empty();
+  const std::optional<Variation> corrected = corrected_robot(d, predictor);
   for_each_job(overlays.size(), d.options.jobs, [&](std::size_t i) {
     overlays[i].nominal = predictor.simulate(overlays[i].run, predictor.unvaried());
-    if (has_model) overlays[i].corrected = predictor.simulate(overlays[i].run, corrected);
+    if (corrected) overlays[i].corrected = predictor.simulate(overlays[i].run, *corrected);
   });
   choose_channels(d, overlays);
   return overlays;

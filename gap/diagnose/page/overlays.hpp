@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gap/diagnose/diagnosis.hpp"
+#include "gap/diagnose/prediction.hpp"
 #include "gap/plot/chart.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -21,6 +22,9 @@ struct Overlay {
 
 // The groups of repeats with most of the gap, as many as a page has room for, in the order of the dataset.
 std::vector<std::size_t> shown_groups(const Diagnosis& d);
+
+// The nominal robot with corrections(), if there are any and it is possible.
+std::optional<Variation> corrected_robot(const Diagnosis& d, const Predictor& predictor);
 
 // Simulates them. Empty for a dataset that was never compared with its simulation (interrupted early).
 std::vector<Overlay> simulate_overlays(const Diagnosis& d);

@@ -35,7 +35,7 @@ std::vector<ChannelResidual> channel_residuals(const StageDiagnosis& stage) {
 
 std::string channel_figure(const Diagnosis& d, const std::vector<ChannelResidual>& residuals) {
   plot::RowChart chart;
-  chart.title = "Residual of each channel in noise units, largest share of the gap first";
+  chart.title = "Residual of each channel in times the noise, largest share of the gap first";
   chart.x_label = "rms of measured minus simulated, over rms of noise (1: noise alone)";
   chart.legend = {{plot::Shape::ring, plot::Ink::sim, "before"}};
   // one row per channel: a ring before, a disc after, both over the noise

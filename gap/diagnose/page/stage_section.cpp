@@ -75,7 +75,8 @@ std::string shrink_figure(const Diagnosis& d, const StageDiagnosis& stage) {
     chart.rows.push_back({std::string(label), {mark}, percent(shrink.value)});
   };
   add(d.observations.runs.size() > 1 ? "repeats held out" : "the run fitted to", stage.gap.shrink);
-  if (folds_by_manoeuvre(d.observations, d.repeats).size() > 1) add("manoeuvres held out", stage.gap_by_manoeuvre.shrink);
+  if (folds_by_manoeuvre(d.observations, d.repeats).size() > 1)
+    add("manoeuvres held out", stage.gap_by_manoeuvre.shrink);
   chart.view = plot::Range{std::max(low, -50.0), std::clamp(high + 3, 105.0, 150.0)};
   chart.guides = {{100, "all"}};
   chart.label_px = 160;

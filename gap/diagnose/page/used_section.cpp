@@ -43,8 +43,9 @@ std::string runs_table(const Diagnosis& d) {
   return html;
 }
 
-std::string warnings_list(const Diagnosis& d) {
-  const std::vector<std::string>& warnings = d.observations.warnings;
+std::string warnings_list(const Diagnosis& d, std::span<const ComparedRun> runs) {
+  std::vector<std::string> warnings = worsened_in_words(d, runs);
+  warnings.insert(warnings.end(), d.observations.warnings.begin(), d.observations.warnings.end());
   if (warnings.empty()) return paragraph("No warnings.");
   std::string html = "<ul class=\"warning\">\n";
   for (std::size_t i = 0; i < std::min(kMostWarnings, warnings.size()); ++i)
@@ -135,14 +136,14 @@ std::string next_section(const Diagnosis& d) {
   return html + to_svg(chart) + to_html(table);
 }
 
-std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) {
+std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays, std::span<const ComparedRun> runs) {
   std::string html = section_head("used", "What was used");
   html += paragraph(fmt::format("{} runs of {} manoeuvres; {} of them are plotted on this page.",
                                 d.observations.runs.size(), d.repeats.size(), overlays.size()));
   if (!d.options.against.empty())
     html += paragraph(plot::escaped(against_in_words(d)) +
                       ". Overlays and residuals over time show all that differs, as measured.");
-  return html + runs_table(d) + "<h3>Warnings</h3>\n" + warnings_list(d) + "<h3>Noise and options</h3>\n" +
+  return html + runs_table(d) + "<h3>Warnings</h3>\n" + warnings_list(d, runs) + "<h3>Noise and options</h3>\n" +
          noise_table(d) + paragraph(options_text(d));
 }
 

@@ -1,8 +1,8 @@
 // Puts the playback's parts together: a run is fetched once, and from then on everything follows the clock.
 import { checkBox, createChannels } from "./playback_channels.js";
 import { createClock } from "./playback_clock.js";
-import { createCurves, differenceInWords, floorsOf, titleOf } from "./playback_curves.js";
-import { fetchList, fetchRun, indexAt, LABELS, nominalGapOf } from "./playback_data.js";
+import { createCurves, differenceInWords, shownUnit, timesNoise, titleOf, valueInWords } from "./playback_curves.js";
+import { fetchList, fetchRun, gapInWords, indexAt, LABELS, nominalGapOf } from "./playback_data.js";
 import { createLanes } from "./playback_lanes.js";
 import { makePicture, savePicture } from "./playback_picture.js";
 import { createReadings } from "./playback_readings.js";
@@ -86,8 +86,18 @@ function worstInWords() {
   const gap = nominalGapOf(run), worst = gap?.worst;
   if (!worst) return "";
   const channel = run.channels.find(({ column }) => column === worst.column), off = differenceInWords(worst.difference, channel);
-  return `Worst at ${worst.t_s.toFixed(2)} s: the nominal simulation is ${floorsOf(worst.floors)} off, rms of all channels; most in ` +
-    `${titleOf(worst.column)}, ${off} in the mean of ${gap.span_s} s, ${floorsOf(worst.difference_floors)} (one: what noise alone does)`;
+  return `Worst of this run at ${worst.t_s.toFixed(2)} s: the nominal simulation is ${timesNoise(worst.floors)} off, rms of all channels; most in ` +
+    `${titleOf(worst.column)}: measured ${valueInWords(worst.recorded, channel)}, simulated ${valueInWords(worst.simulated, channel)} ${shownUnit(channel.unit)}, ` +
+    `difference ${off} in the mean of ${gap.span_s} s, ${timesNoise(worst.difference_floors)}.${ofAllInWords()}`;
+}
+
+// Whether that is the worst of all runs, where the report has them.
+function ofAllInWords() {
+  const known = list.runs.filter(({ worst }) => worst);
+  if (known.length < 2) return "";
+  const most = known.reduce((a, b) => (b.worst.floors > a.worst.floors ? b : a));
+  return most.file === run.file ? " It is the worst of all runs." :
+    ` Worst of all runs: ${timesNoise(most.worst.floors)} at ${most.worst.t_s.toFixed(2)} s of ${most.file}.`;
 }
 
 function toWorst() {
@@ -98,22 +108,27 @@ function toWorst() {
   clock.set(worst.t_s);
 }
 
-function takePicture() {
+const SAVED_MS = 4000;
+async function takePicture() {
   const factor = Number(by("exaggerate").value), at = `${run.manoeuvre}, ${run.file}, at ${clock.t.toFixed(2)} s`;
   const worst = nominalGapOf(run)?.worst, isWorst = worst && Math.abs(worst.t_s - clock.t) < 0.005;
   const differences = [...by("difference").querySelectorAll("tbody tr")].map(({ cells: [title, ...values] }) => {
     const [name, unit] = title.textContent.split(", ");
     return `${name} ${values.map((cell) => cell.textContent).join(" and ")} ${unit}`;
   }).join(", ");
-  const kinds = [...by("difference").querySelectorAll("thead th")].map((head) => head.textContent).filter(Boolean).join(" and ");
+  const kinds = [...by("difference").querySelectorAll("thead th")].slice(1).map((head) => head.textContent).join(" and ");
   curves.read(clock.t);
   const bodies = run.bodies.filter(({ kind }) => shown(kind)).map(({ kind }) => ({ kind, text: LABELS[kind](list.source) }));
   const time = { from_s: zoom.from, to_s: zoom.to, t_s: clock.t, xOf: lanes.xOf };
-  return savePicture(makePicture(view?.picture() ?? null, { parts: curves.parts(), bodies, time }, [
+  const name = `${run.file.replace(/\.csv$/, "").replace(/[^\w.-]/g, "_")}-${clock.t.toFixed(2)}s.png`;
+  await savePicture(makePicture(view?.picture() ?? null, { parts: curves.parts(), bodies, time }, [
     `${list.name}: ${at}${isWorst ? ". " + worstInWords() : ""}`,
-    kinds && `Simulated minus recorded, ${kinds}: ${differences}`,
+    kinds && `Measured minus simulated, ${kinds}: ${differences}`,
     view && factor > 1 && deviationInWords(factor),
-  ]), `${run.file.replace(/\.csv$/, "").replace(/[^\w.-]/g, "_")}-${clock.t.toFixed(2)}s.png`);
+  ]), name);
+  lanes.say(`Picture saved as ${name} among the browser's downloads.`);
+  by("save").textContent = "Picture saved";
+  setTimeout(() => { by("save").textContent = "Save picture"; }, SAVED_MS);
 }
 
 const deviationInWords = (factor) => `Deviations from the recorded robot are drawn ${factor} times as large.`;
@@ -187,7 +202,7 @@ addEventListener("keydown", (event) => {
   if (event.code !== "Space" || !event.repeat) act();
 });
 for (const [id, act] of [["play", KEYS.Space], ["step-back", KEYS.ArrowLeft], ["step-on", KEYS.ArrowRight], ["to-start", KEYS.Home], ["to-end", KEYS.End],
-  ["zoom-in", TYPED["+"]], ["zoom-out", TYPED["-"]], ["zoom-all", TYPED[0]], ["worst", toWorst], ["save", takePicture]]) {
+  ["zoom-in", TYPED["+"]], ["zoom-out", TYPED["-"]], ["zoom-all", TYPED[0]], ["worst", toWorst], ["save", () => takePicture().catch((error) => complain(`No picture saved: ${error.message}`))]]) {
   by(id).addEventListener("click", () => { if (run) act(); });
 }
 by("exaggerate").addEventListener("input", exaggerate);
@@ -202,8 +217,9 @@ function tellVerdict() {
   by("verdict").hidden = false;
 }
 
-const runInWords = ({ manoeuvre, file, duration_s, share }) => [manoeuvre, file, `${duration_s.toFixed(1)} s`,
-  ...(share === undefined ? [] : [`${Math.round(100 * share)} % of the gap`])].join(" \u00b7 ");
+const runInWords = ({ manoeuvre, file, share, worst }) => [manoeuvre, file,
+  ...(worst ? [`worst ${timesNoise(worst.floors)}`] : []),
+  ...(share === undefined ? [] : [`${Math.round(100 * share)} % of ${gapInWords(list.report?.stage)}`])].join(" \u00b7 ");
 
 fetchList().then(async (answer) => {
   list = answer;

@@ -1,5 +1,5 @@
 // Which curves are shown: the list of them, by this run's own gap, and what somebody chose from it.
-import { floorsOf, titleOf } from "./playback_curves.js";
+import { timesNoise, titleOf } from "./playback_curves.js";
 import { nominalGapOf } from "./playback_data.js";
 
 const WITHOUT_GAP = ["x_m", "pitch_rad", "track_left_mps"], MOST_AT_FIRST = 3;
@@ -38,7 +38,7 @@ export function createChannels(changed) {
     const gap = nominalGapOf(run), floors = gap?.floors ?? {}, of = (channel) => floors[channel.column] ?? -1;
     sorted = [...run.channels].sort((a, b) => of(b) - of(a));
     list.replaceChildren(...sorted.map((channel) => {
-      const title = of(channel) < 0 ? titleOf(channel.column) : `${titleOf(channel.column)}, ${floorsOf(of(channel))}`;
+      const title = of(channel) < 0 ? titleOf(channel.column) : `${titleOf(channel.column)}, ${timesNoise(of(channel))}`;
       const label = checkBox(` ${title}`, false, (on) => turn(channel.column, on));
       label.firstChild.dataset.column = channel.column;
       return label;

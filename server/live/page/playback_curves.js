@@ -1,10 +1,10 @@
-// Curves of chosen columns over time: real against simulated, and below it what the simulations differ by, over the
-// band of the floor. The cursor is not drawn here: it moves alone, and the figures at it are text.
+// Curves of chosen columns over time: real against simulated, and below it measured minus simulated, over the
+// band of the noise. The cursor is not drawn here: it moves alone, and the figures at it are text.
 import { fixed } from "./numbers.js";
 import { penOf } from "./pen.js";
 import { indexAt } from "./playback_data.js";
 
-const VALUES_PX = 56, DIFFERENCES_PX = 44, BETWEEN_PX = 8, DEG = 180 / Math.PI;
+const VALUES_PX = 56, DIFFERENCES_PX = 44, BETWEEN_PX = 8, LEFT_PX = 58, RIGHT_PX = 12, NEAR_PX = 10, DEG = 180 / Math.PI;
 const DASHES = { recorded: [], nominal: [6, 4], corrected: [] };
 const WIDTHS = { recorded: 2.6, nominal: 1.5, corrected: 1.5 };
 const ORDER = ["recorded", "nominal", "corrected"];
@@ -22,7 +22,7 @@ export function titleOf(column) {
   return words;
 }
 
-// So many digits that a tenth of the floor shows.
+// So many digits that a tenth of the noise shows.
 const digitsOf = (floor) => Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(floor))));
 const signed = (text) => (/[1-9]/.test(text) && !text.startsWith("\u2212") ? `+${text}` : text);
 
@@ -30,10 +30,9 @@ const signed = (text) => (/[1-9]/.test(text) && !text.startsWith("\u2212") ? `+$
 export function differenceInWords(difference, channel) {
   return `${signed(fixed(shownValue(difference, channel.unit), digitsOf(shownValue(channel.floor, channel.unit))))} ${shownUnit(channel.unit)}`;
 }
-export const floorsOf = (value) => {
-  const text = value < 9.95 ? value.toFixed(1) : value.toFixed(0);
-  return `${text} ${text === "1.0" ? "floor" : "floors"}`;
-};
+export const timesNoise = (value) => `${value.toFixed(value < 9.95 ? 1 : 0)} \u00d7 noise`;
+// A value of a channel in the unit that is shown, without it.
+export const valueInWords = (value, channel) => fixed(shownValue(value, channel.unit), digitsOf(shownValue(channel.floor, channel.unit)));
 
 // Least and most of 1, 2, 5 times a power of ten around what there is.
 function rangeOf(lines, [first, last], least = Infinity, most = -Infinity) {
@@ -50,13 +49,13 @@ function rangeOf(lines, [first, last], least = Infinity, most = -Infinity) {
 
 const plain = (value, step) => fixed(value, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
 
-// Simulated minus recorded at every time.
+// Measured minus simulated at every time.
 function differencesOf(run, channel, body) {
   const recorded = run.bodies[0].channels[channel.column], simulated = body.channels[channel.column];
   if (!recorded || !simulated) return null;
   return simulated.map((value, i) => {
     if (value === null || recorded[i] === null) return null;
-    const way = value - recorded[i];
+    const way = recorded[i] - value;
     return shownValue(channel.wraps ? Math.atan2(Math.sin(way), Math.cos(way)) : way, channel.unit);
   });
 }
@@ -84,8 +83,8 @@ export function createCurves(xOf, zoom) {
     const figure = document.createElement("figure"), caption = document.createElement("figcaption"), canvas = document.createElement("canvas");
     figure.className = "curve";
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", `${titleOf(channel.column)}: recorded and simulated, and their difference with its floor`);
-    const floor = shownValue(channel.floor, channel.unit), about = [`floor \u00b1${fixed(floor, digitsOf(floor))} (${FLOORS[channel.floor_from]})`];
+    canvas.setAttribute("aria-label", `${titleOf(channel.column)}: measured and simulated, and their difference with its noise`);
+    const floor = shownValue(channel.floor, channel.unit), about = [`noise \u00b1${fixed(floor, digitsOf(floor))} (${FLOORS[channel.floor_from]})`];
     if (channel.share > 0.005) about.push(`${Math.round(channel.share * 100)} % of the gap in all runs`);
     const readings = span("readings", "");
     caption.append(span("title", `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`), span("soft", about.join(", ")), readings);
@@ -102,7 +101,7 @@ export function createCurves(xOf, zoom) {
     strip.differences = bodies.filter((body) => body.kind !== "recorded").flatMap((body) => {
       const values = differencesOf(run, channel, body), gap = run.gaps.find((each) => each.kind === body.kind);
       const means = gap?.differences[channel.column]?.map((v) => (v === null ? null : shownValue(v, channel.unit)));
-      return values && means ? [{ kind: body.kind, values, means, span_s: gap.span_s }] : [];
+      return values && means ? [{ kind: body.kind, values, means, times: gap.difference_floors[channel.column], span_s: gap.span_s }] : [];
     });
     strip.floor = shownValue(channel.floor, channel.unit);
   }
@@ -177,7 +176,7 @@ export function createCurves(xOf, zoom) {
       pen.setLineDash([]);
     });
 
-    // the floor as a band, single samples pale, and the means that are counted in floors
+    // the noise as a band, single samples pale, and the means that are counted in times the noise
     const differenceRange = differences.length ? rangeOf(differences, seen, -1.2 * floor, 1.2 * floor) : null;
     if (differenceRange) frame(differenceRange, VALUES_PX + BETWEEN_PX, height - 6, (y) => {
       pen.fillStyle = colour("--floor");
@@ -198,8 +197,17 @@ export function createCurves(xOf, zoom) {
       pen.textAlign = "left";
       pen.lineWidth = 3;
       pen.strokeStyle = colour("--panel");
-      for (const put of ["strokeText", "fillText"]) pen[put]("minus recorded", left + 8, VALUES_PX + BETWEEN_PX + 6);
+      for (const put of ["strokeText", "fillText"]) pen[put]("measured minus simulated", left + 8, VALUES_PX + BETWEEN_PX + 6);
     });
+  }
+
+  // Beside the cursor, as far as the title leaves room.
+  function putNear(x, readings) {
+    const caption = readings.parentElement, before = readings.previousElementSibling;
+    const wraps = readings.offsetTop >= before.offsetTop + before.offsetHeight;
+    const least = wraps ? LEFT_PX : before.offsetLeft + before.offsetWidth + NEAR_PX, most = caption.clientWidth - RIGHT_PX - readings.offsetWidth;
+    const beside = x + NEAR_PX > most ? x - NEAR_PX - readings.offsetWidth : x + NEAR_PX;
+    readings.style.transform = `translateX(${Math.round(Math.max(least, Math.min(most, beside)) - readings.offsetLeft)}px)`;
   }
 
   // What the curves are worth at t.
@@ -210,13 +218,14 @@ export function createCurves(xOf, zoom) {
       readings.replaceChildren(...(lines ?? []).map(({ kind, values }) => {
         const value = values[i] ?? null, off = differences.find((each) => each.kind === kind), digits = digitsOf(floor);
         let text = value === null ? "\u2013" : fixed(value, digits);
-        const mean = off?.means[Math.floor(t / off.span_s + 1e-9)] ?? null;
-        if (mean !== null) text += ` (mean ${signed(fixed(mean, digits))}, ${floorsOf(Math.abs(mean) / floor)})`;
+        const s = off ? Math.floor(t / off.span_s + 1e-6) : 0, mean = off?.means[s] ?? null;
+        if (mean !== null) text += ` (mean ${signed(fixed(mean, digits))}, ${timesNoise(Math.abs(off.times[s] ?? mean / floor))})`;
         const reading = span("reading", text, kind);
-        reading.title = kind === "command" ? "command" : off ? `${kind}: value (minus recorded, mean over ${off.span_s} s, and that in floors)` : kind;
+        reading.title = kind === "command" ? "command" : off ? `${kind}: value (measured minus simulated, mean over ${off.span_s} s, and how many times the noise that is)` : kind;
         reading.prepend(span("swatch", "", kind));
         return reading;
       }));
+      putNear(xOf(t), readings);
     }
   }
 

@@ -12,7 +12,7 @@ async function ask(path) {
 
 export async function fetchList() {
   const list = await (await ask("/playback")).json();
-  if (list.format !== "kenaf-playback/1") throw new Error("the server is of another version than this page");
+  if (list.format !== "kenaf-playback/2") throw new Error("the server is of another version than this page");
   return list;
 }
 
@@ -68,11 +68,11 @@ export function stateAt(run, body, t) {
   };
 }
 
-// Simulated minus recorded: distance and place in mm, angles in degrees.
+// Measured minus simulated, as in the report: distance and place in mm, angles in degrees.
 export function differenceOf(recorded, simulated) {
   if (!recorded || !simulated) return null;
-  const place_mm = simulated.p.map((value, i) => 1000 * (value - recorded.p[i]));
-  const angles_deg = simulated.angles.map((value, i) => DEG * turn(value - recorded.angles[i]));
+  const place_mm = simulated.p.map((value, i) => 1000 * (recorded.p[i] - value));
+  const angles_deg = simulated.angles.map((value, i) => DEG * turn(recorded.angles[i] - value));
   return { distance_mm: Math.hypot(...place_mm), place_mm, angles_deg };
 }
 
@@ -93,6 +93,17 @@ export function exaggerated(recorded, simulated, factor) {
     flipper: simulated.flipper.map((value, i) => recorded.flipper[i] + Math.max(-Math.PI, Math.min(Math.PI, factor * (value - recorded.flipper[i])))),
   };
 }
+
+// What a stage of the report compares, for readers who have not seen one: its name in the row of the marks, and what a gap there is.
+const STAGES = {
+  "command to drive": ["drives", "tracks and flippers respond to the commands differently than in the simulation"],
+  "drive to body": ["body", "the body moves differently than in the simulation, with the same track motion"],
+  "body to sensor": ["sensors", "a sensor reports a motion that differs from the motion of the body"],
+};
+export const stageName = (stage) => STAGES[stage]?.[0] ?? "";
+export const stageMeaning = (stage) => STAGES[stage]?.[1] ?? "";
+// "the gap from body to sensor": shares are of one stage alone.
+export const gapInWords = (stage) => (stage ? `the gap from ${stage}` : "the gap");
 
 export const LABELS = {
   recorded: (source) => (source === "real" ? "Real robot, as recorded" : "Recorded run"),

@@ -1,5 +1,6 @@
 // The time line: its ruler, the phases, the marks of the report, and the cursor that is dragged over all of them.
 import { onDrag } from "./drag.js";
+import { gapInWords, stageMeaning, stageName } from "./playback_data.js";
 
 const LEFT_PX = 58, RIGHT_PX = 12, NARROW_PX = 26;
 const MOST_SHADE = 0.62;   // as in the report: text on it keeps a contrast of 4.5 : 1
@@ -22,7 +23,11 @@ export function createLanes(clock, zoom, drawn, hovered) {
   const lanes = by("lanes"), ruler = by("ruler"), cursor = by("cursor"), hover = by("hover"), about = by("about-mark");
   let run = null, report = null, spans = [];
 
-  const usual = () => (run?.marks.length ? `Darker: in the report, a larger part of the gap${report?.stage ? ` from ${report.stage}` : ""} between the robot and its nominal simulation.` : "");
+  const usual = () => {
+    if (!run?.marks.length) return "";
+    const meaning = stageMeaning(report?.stage);
+    return `Darker: in the report, a larger part of ${gapInWords(report?.stage)}${meaning ? `: ${meaning}` : ""}.`;
+  };
   const end = () => run.t_s[run.t_s.length - 1] || 1;
   const width = () => Math.max(1, lanes.clientWidth - LEFT_PX - RIGHT_PX);
   const xOf = (t) => LEFT_PX + (t - zoom.from) / (zoom.to - zoom.from) * width();
@@ -64,7 +69,7 @@ export function createLanes(clock, zoom, drawn, hovered) {
 
   function tell(mark) {
     const whose = mark.run && mark.run !== run.file ? `, times of its repeat ${mark.run}` : "";
-    return `${mark.manoeuvre}, ${mark.phase}, ${seconds(mark.from_s)} to ${seconds(mark.to_s)} s: ${percent(mark.share)} of the gap${whose}`;
+    return `${mark.manoeuvre}, ${mark.phase}, ${seconds(mark.from_s)} to ${seconds(mark.to_s)} s: ${percent(mark.share)} of ${gapInWords(report?.stage)}${whose}`;
   }
 
   function drawMarks() {
@@ -85,7 +90,8 @@ export function createLanes(clock, zoom, drawn, hovered) {
     });
     const none = report ? "The report does not cover this run" :
       "No marks without a report: kenaf-gap diagnose RUNS --out DIR, then kenaf-gap play RUNS --report DIR";
-    lane.replaceChildren(element("span", "name", "gap"), ...(made.length ? made : [element("span", "none", none)]));
+    const name = stageName(report?.stage), title = element("span", name ? "name two" : "name", name ? `gap of ${name}` : "gap");
+    lane.replaceChildren(title, ...(made.length ? made : [element("span", "none", none)]));
     about.textContent = usual();
 
     // the scale of the report: of all its phases, not of this run's
@@ -103,6 +109,8 @@ export function createLanes(clock, zoom, drawn, hovered) {
     zoom.reveal(clock.t);
     cursor.hidden = !isShown(clock.t);
     cursor.style.left = `${xOf(clock.t)}px`;
+    cursor.dataset.time = `${seconds(clock.t)} s`;
+    cursor.classList.toggle("left", xOf(clock.t) > lanes.clientWidth - 70);
     ruler.setAttribute("aria-valuenow", seconds(clock.t));
     ruler.setAttribute("aria-valuetext", `${seconds(clock.t)} seconds`);
     for (const { made, phase } of spans) made.toggleAttribute("data-now", clock.t >= phase.from_s && clock.t < phase.to_s);
@@ -152,6 +160,7 @@ export function createLanes(clock, zoom, drawn, hovered) {
 
   return {
     xOf, moveCursor, draw,
+    say(text) { about.textContent = text; },
     load(next, ofReport) { run = next; report = ofReport; pointAt(null); draw(); },
     phaseAt(t) { return run?.phases.findLast((phase) => t >= phase.from_s)?.phase ?? ""; },
   };

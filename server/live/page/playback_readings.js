@@ -1,4 +1,4 @@
-// What there is to read at the cursor: where the recorded robot is, and how far each simulation is from it.
+// What there is to read at the cursor: where the recorded robot is, and how far it is from each simulation.
 import { fixed } from "./numbers.js";
 import { differenceOf, stateAt } from "./playback_data.js";
 
@@ -25,9 +25,10 @@ export function createReadings() {
     table.replaceChildren();
     cells = [];
     if (!simulated.length) return;
-    table.createCaption().textContent = "Simulated minus recorded";
-    const head = table.createTHead().insertRow();
-    head.append(document.createElement("td"), ...simulated.map((body) => {
+    const head = table.createTHead().insertRow(), corner = document.createElement("th");
+    corner.scope = "col";
+    corner.textContent = "Measured minus";
+    head.append(corner, ...simulated.map((body) => {
       const name = document.createElement("th");
       name.scope = "col";
       name.textContent = body.kind;
@@ -50,7 +51,7 @@ export function createReadings() {
       by("now-phase").textContent = phase;
       if (!run) return;
       const [recorded] = run.bodies, state = stateAt(run, recorded, t), how = FROM[recorded.pose_from];
-      by("place").textContent = state ? `Recorded at x ${metres(state.p[0])}, y ${metres(state.p[1])}, z ${metres(state.p[2])} m (${how})`
+      by("place").textContent = state ? `Robot at x ${metres(state.p[0])}, y ${metres(state.p[1])}, z ${metres(state.p[2])} m${recorded.pose_from === "measured" ? "" : ` (${how})`}`
         : recorded.pose ? "Recorded: its pose was not measured here" : "Recorded: its pose is not known";
       const differences = new Map();
       for (const { cell, body, value } of cells) {

@@ -67,6 +67,30 @@ TEST_CASE("The first screen says where, which, how much, what is left and what n
              Contains("Use <b>robot.toml</b>") && Contains("a comment at its top lists what it does not contain"));
 }
 
+TEST_CASE("The first screen says where the gap is worst, and which runs the correction worsens") {
+  Diagnosis d = made_diagnosis();
+  const std::string better = answers_of(d);
+  // 0.1 m ahead with 0.01 m of noise, and both tracks 0.05 m/s too fast, of five channels
+  CHECK_THAT(better,
+             Contains("<dt>Where is it worst?</dt>") && Contains("the nominal simulation is <b>5.5 \u00d7 noise</b>") &&
+                 Contains("It is most off in x_m: measured ") && Contains(" difference -0.100 m (10 \u00d7 noise)"));
+  CHECK_THAT(better, !Contains("The correction worsens"));
+
+  // corrected by twice as much, the other way
+  std::vector<Overlay> overlays = overlays_of(d);
+  overlays[1].corrected = run_ahead_by(-0.2, 0.05);
+  const std::string page = diagnosis_page(d, overlays);
+  CHECK(fault_of_xml(page) == "");
+  CHECK_THAT(page.substr(0, page.find("<nav>")),
+             Contains("The correction worsens run-002.csv (up &amp; &lt;over&gt;): over the whole run the corrected "
+                      "simulation is ") &&
+                 Contains("; most in x_m, ") && !Contains("worsens run-000.csv"));
+  CHECK_THAT(page.substr(page.find("<h3>Warnings</h3>")), Contains("The correction worsens run-002.csv"));
+
+  // without a gap nothing is worst
+  CHECK_THAT(answers_of(made_without_gap()), !Contains("Where is it worst?"));
+}
+
 TEST_CASE("A page has every number of every stage") {
   const std::string page = page_of(made_diagnosis());
   // gap before, after, noise; shrink by repeats and by manoeuvres

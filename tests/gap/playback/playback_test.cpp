@@ -15,6 +15,8 @@
 #include <numbers>
 #include <thread>
 
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/report.hpp"
 #include "gap/playback/columns_in_time.hpp"
 #include "gap/playback/dead_reckoning.hpp"
 #include "gap/playback/playback_path.hpp"
@@ -225,45 +227,127 @@ TEST_CASE("Floors are the report's, else the dataset's noise, else the least tha
 TEST_CASE("A run's gap is counted in floors, by means over quarters of a second, and is worst where all are together") {
   // one second at 100 Hz: x is off by 20 mm in the third quarter and by 10 mm in the fourth; yaw by 2 pi - 6.2 across
   // pi
-  PlayedBody recorded, simulated;
-  PlayedTimes times;
   const double across = 2 * std::numbers::pi - 6.2;
-  for (int i = 0; i < 100; ++i) {
-    times.push_back(0.01 * i);
-    recorded.channels["x_m"].push_back(1);
-    simulated.channels["x_m"].push_back(i < 50 ? 1 : i < 75 ? 1.02 : 1.01);
-    recorded.channels["yaw_rad"].push_back(3.1);
-    simulated.channels["yaw_rad"].push_back(-3.1);
-    recorded.channels["z_m"].push_back(kNotMeasured);
-    simulated.channels["z_m"].push_back(0);
-  }
-  simulated.channels["y_m"] = simulated.channels["x_m"];  // was not recorded
+  const runs::Run recorded = test::made_run(
+      1, 0.01, {{"x_m", [](double) { return 1.0; }}, {"yaw_rad", [](double) { return 3.1; }}, {"z_m", [](double) {
+                                                                                                 return kNotMeasured;
+                                                                                               }}});
+  const auto ahead = [](double t_s) { return t_s < 0.495 ? 1 : t_s < 0.745 ? 1.02 : 1.01; };
+  // y was not recorded
+  const runs::Run simulated = test::made_run(
+      1, 0.01, {{"x_m", ahead}, {"yaw_rad", [](double) { return -3.1; }}, {"z_m", still}, {"y_m", ahead}});
   std::map<std::string, Floor> floors = floors_of({}, nullptr);
   floors["x_m"].value = 0.005;
   floors["yaw_rad"].value = across / 2;
-  const RunGap gap = gap_of_run(recorded, simulated, times, floors);
-  REQUIRE(gap.differences.size() == 2);
-  const std::vector<double>& x = gap.differences.at("x_m");
-  REQUIRE(x.size() == 4);
-  for (const auto& [span, expected_m] : {std::pair{0, 0.0}, {1, 0.0}, {2, 0.02}, {3, 0.01}})
-    CHECK(x[static_cast<std::size_t>(span)] == Approx(expected_m).margin(1e-12));
-  CHECK(gap.floors.at("x_m") == Approx(std::sqrt(5)));  // 0, 0, 4 and 2 floors
-  CHECK(gap.floors.at("yaw_rad") == Approx(2));
+  const diagnose::RunGap gap = gap_of_run(recorded, simulated, floors);
+  REQUIRE(gap.channels.size() == 2);
+  const diagnose::ChannelCourse &x = gap.channels[0], &yaw = gap.channels[1];
+  REQUIRE(x.difference.size() == 4);
+  // measured minus simulated
+  for (const auto& [span, expected_m] : {std::pair{0, 0.0}, {1, 0.0}, {2, -0.02}, {3, -0.01}})
+    CHECK(x.difference[static_cast<std::size_t>(span)] == Approx(expected_m).margin(1e-12));
+  CHECK(x.rms == Approx(std::sqrt(5)));  // 0, 0, 4 and 2 floors
+  CHECK(yaw.rms == Approx(2));
+  CHECK(gap.rms == Approx(std::sqrt(4.5)));
   REQUIRE(gap.worst);
-  CHECK(gap.worst->t_s == 0.625);
-  CHECK(gap.worst->floors == Approx(std::sqrt(10)));  // 4 floors of x and 2 of yaw
-  CHECK(gap.worst->column == "x_m");
-  CHECK(gap.worst->difference == Approx(0.02));
-  CHECK(gap.worst->difference_floors == Approx(4));
+  const diagnose::RunMoment& worst = *gap.worst_moment();
+  CHECK(worst.at_s == 0.625);
+  CHECK(worst.times_noise == Approx(std::sqrt(10)));  // 4 floors of x and 2 of yaw
+  CHECK(diagnose::diagnosis_channels()[worst.channels[0].channel].column == "x_m");
+  CHECK(worst.channels[0].measured == Approx(1));
+  CHECK(worst.channels[0].simulated == Approx(1.02));
+  CHECK(worst.channels[0].difference() == Approx(-0.02));
+  CHECK(worst.channels[0].times_noise == Approx(4));
   // nothing in common: no worst moment
-  CHECK_FALSE(gap_of_run(recorded, PlayedBody(), times, floors).worst);
+  CHECK_FALSE(gap_of_run(recorded, test::made_run(1, 0.01, {{"track_left_a", still}}), floors).worst);
+}
+
+TEST_CASE("A last sample alone in its quarter of a second has the noise of one, and is not the worst moment for it") {
+  // x is off by 20 mm in the third quarter, by 30 mm in the one sample at 1 s: 4 floors, and 6 by a fifth
+  const runs::Run recorded = test::made_run(1.011, 0.01, {{"x_m", [](double) { return 1.0; }}});
+  const auto ahead = [](double t_s) { return t_s < 0.495 ? 1 : t_s < 0.745 ? 1.02 : t_s < 0.995 ? 1 : 1.03; };
+  const runs::Run simulated = test::made_run(1.011, 0.01, {{"x_m", ahead}});
+  REQUIRE(recorded.row_count() == 101);
+  std::map<std::string, Floor> floors = floors_of({}, nullptr);
+  floors["x_m"].value = 0.005;
+  const diagnose::RunGap gap = gap_of_run(recorded, simulated, floors);
+  REQUIRE(gap.moments.size() == 5);
+  CHECK(gap.moments[4].at_s == Approx(1));
+  CHECK(gap.moments[4].times_noise == Approx(1.2));
+  CHECK(gap.worst_moment()->at_s == 0.625);
+}
+
+TEST_CASE("A report and a playback of the same run have the same worst moment, with the same figures") {
+  const Recorded recorded;
+  diagnose::Diagnosis d;
+  std::vector<std::string> notes;
+  d.observations.robot = physics::load_robot("kenaf");
+  d.observations.worlds.push_back(physics::load_world("flat", notes));
+  d.observations.runs.push_back(
+      diagnose::observation_of({"a.csv", "go", ""}, runs::read_run(recorded.folder / "a.csv"), "a.csv"));
+  d.features = diagnose::compared_features(d.observations, d.options.span_s);
+  d.repeats = {{0}};
+  const json of_report = json::parse(diagnose::diagnosis_json(d))["runs"];
+  REQUIRE(of_report.size() == 1);
+  CHECK(of_report[0]["run"] == "a.csv");
+  CHECK(of_report[0]["times_noise_corrected"].is_null());
+  const json& worst = of_report[0]["worst"];
+
+  const Playback playback = load_playback({recorded.folder / "a.csv", "", "", "", ""});
+  const json played = json::parse(played_run_json(playback, 0, prepare_run(playback, 0)))["gaps"][0]["worst"];
+  CHECK(played["t_s"] == worst["at_s"]);
+  CHECK(played["column"] == worst["channel"]);
+  for (const auto& [of_page, in_report] : {std::pair{"floors", "times_noise"},
+                                           {"recorded", "measured"},
+                                           {"simulated", "simulated"},
+                                           {"difference", "difference"},
+                                           {"difference_floors", "channel_times_noise"}})
+    CHECK(played[of_page].get<double>() == Approx(worst[in_report].get<double>()).epsilon(1e-4).margin(1e-6));
+  CHECK(worst["difference"].get<double>() ==
+        Approx(worst["measured"].get<double>() - worst["simulated"].get<double>()));
+}
+
+TEST_CASE("A playback begins with the run that has the worst moment of all, unless it is told where to begin") {
+  const Recorded recorded;
+  std::string report = kReport;
+  report.pop_back();
+  const auto with_runs = [&](const std::string& runs) {
+    std::ofstream(recorded.folder / "report/report.json") << report << ", \"runs\": [" << runs << "]}";
+    return recorded.load();
+  };
+  const std::string a = R"({"run": "a.csv", "worst": {"at_s": 1.9, "times_noise": 7}})",
+                    b = R"({"run": "b.csv", "worst": {"at_s": 1.4, "times_noise": 12.5}})",
+                    c = R"({"run": "c.csv", "worst": null})";
+  const Playback playback = with_runs(a + "," + b + "," + c);
+  CHECK(playback.first == 1);
+  const json list = json::parse(playback_json(playback));
+  CHECK(list["first"] == 1);
+  CHECK(list["runs"][0]["worst"] == json{{"t_s", 1.9}, {"floors", 7.0}});
+  CHECK(list["runs"][1]["worst"]["floors"] == 12.5);
+  CHECK_FALSE(list["runs"][2].contains("worst"));
+  CHECK(load_playback({recorded.folder.path(), recorded.folder / "report", "go", "", ""}).first == 0);
+  CHECK(load_playback({recorded.folder.path(), recorded.folder / "report", "", "", "", 1.5}).first == 0);
+  CHECK(with_runs("").first == 0);
+  CHECK(with_runs(R"({"run": "b.csv", "worst": {"at_s": null, "times_noise": 3}})").first == 0);
+}
+
+TEST_CASE("A report is given by its folder or by its file") {
+  const Recorded recorded;
+  const auto load = [&](const std::filesystem::path& report) {
+    return load_playback({recorded.folder.path(), report, "", "", ""});
+  };
+  std::filesystem::copy_file(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml",
+                             recorded.folder / "report/robot.toml");
+  CHECK(load(recorded.folder / "report/report.json").report->verdict == "named");
+  CHECK(load(recorded.folder / "report/report.json").robots.corrected);
+  CHECK_THROWS_WITH(load(recorded.folder / "report/page.json"), Catch::Contains("there is no report.json"));
 }
 
 TEST_CASE("A page is told a run's poses, times and marks as they were recorded") {
   const Recorded recorded;
   const Playback playback = recorded.load();
   const json list = json::parse(playback_json(playback));
-  CHECK(list["format"] == "kenaf-playback/1");
+  CHECK(list["format"] == "kenaf-playback/2");
   CHECK(list["runs"].size() == 3);
   CHECK(list["runs"][1] == json{{"file", "b.csv"},
                                 {"manoeuvre", "go"},
@@ -308,11 +392,13 @@ TEST_CASE("A page is told a run's poses, times and marks as they were recorded")
   CHECK(gap["kind"] == "nominal");
   CHECK(gap["span_s"] == 0.25);
   CHECK(gap["differences"]["x_m"].size() == 8);
+  CHECK(gap["difference_floors"]["x_m"].size() == 8);
   CHECK(gap["differences"]["x_m"][0].get<double>() == Approx(0).margin(0.002));
   CHECK(gap["worst"]["t_s"] == 1.875);
   CHECK(gap["worst"]["column"] == "x_m");
   CHECK(gap["worst"]["difference"].get<double>() ==
-        Approx(0.13).margin(0.025));  // 1.37 s after the start, less what it needs to get going
+        Approx(-0.13).margin(
+            0.025));  // measured minus simulated; 1.37 s after the start, less what it needs to get going
   CHECK(run["notes"].empty());
 }
 

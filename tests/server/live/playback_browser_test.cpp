@@ -23,13 +23,24 @@ constexpr const char* kPlacesReport = R"({"format": "kenaf-gap-report/1", "verdi
                        {"manoeuvre": "straight", "run": "run-000.csv", "phase": "speed change", "from_s": 0.5, "to_s": 1, "share": 0.3},
                        {"manoeuvre": "turn-in-place", "run": "run-001.csv", "phase": "turn", "from_s": 1, "to_s": 4, "share": 0.2}]}})";
 
+// The same with the stage whose gap it is, and the worst moment of each run.
+constexpr const char* kReportOfWorst =
+    R"({"format": "kenaf-gap-report/2", "verdict": "named", "named": ["drive_lag"], "stages": [],
+  "where": {"stage": "body to sensor", "channels": [{"channel": "track_left_mps", "share": 0.6, "floor": 0.002}],
+            "phases": [{"manoeuvre": "straight", "run": "run-000.csv", "phase": "cruise", "from_s": 1, "to_s": 4, "share": 0.5},
+                       {"manoeuvre": "straight", "run": "run-000.csv", "phase": "speed change", "from_s": 0.5, "to_s": 1, "share": 0.3},
+                       {"manoeuvre": "turn-in-place", "run": "run-001.csv", "phase": "turn", "from_s": 1, "to_s": 4, "share": 0.2}]},
+  "runs": [{"run": "run-000.csv", "worst": {"at_s": 5.625, "times_noise": 7}},
+           {"run": "run-001.csv", "worst": {"at_s": 1.375, "times_noise": 99}}]})";
+
 struct PlaybackDesk {
+  const char* report;
   test::TemporaryFolder folder, profile;
-  gap::playback::PlaybackServer server{make(folder), {true, "127.0.0.1", 0, "sesame"}};
+  gap::playback::PlaybackServer server{make(folder, report), {true, "127.0.0.1", 0, "sesame"}};
   Browser browser{profile.path()};
   std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
 
-  static gap::playback::Playback make(const test::TemporaryFolder& folder) {
+  static gap::playback::Playback make(const test::TemporaryFolder& folder, const char* report) {
     gap::datasets::SimulationRequest request;
     request.manoeuvres = {"straight", "turn-in-place"};
     request.effects = {"drive_lag:lag_s=0.5"};
@@ -37,12 +48,12 @@ struct PlaybackDesk {
     request.out = folder / "runs";
     gap::datasets::simulate_dataset(request);
     std::filesystem::create_directory(folder / "report");
-    runs::write_whole_file(folder / "report/report.json", kPlacesReport);
+    runs::write_whole_file(folder / "report/report.json", report);
     const std::string robot = runs::read_whole_file(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml");
     runs::write_whole_file(folder / "report/robot.toml", robot + "\n[effects.drive_lag]\nlag_s = 0.5\n");
     return gap::playback::load_playback({folder / "runs", folder / "report", "", "", ""});
   }
-  PlaybackDesk() {
+  explicit PlaybackDesk(const char* with = kPlacesReport) : report(with) {
     std::filesystem::create_directories(pictures);
     browser.resize(1280, 800);
     browser.open(server.url());
@@ -118,8 +129,8 @@ TEST_CASE("In a browser: a recorded run plays beside its simulations, and the ti
       "at('pointermove', r.left + 58 + (r.width - 70) / 2); at('pointerup', r.left + 300); })()");
   CHECK(desk.time_s() == Approx(3).margin(0.02));
   // half a second of lag at 0.2 m/s or more: the nominal robot is ahead of the recorded one, and the corrected one with
-  // it
-  CHECK(desk.difference(1, 1) > 50);
+  // it; measured minus simulated
+  CHECK(desk.difference(1, 1) < -50);
   CHECK(std::abs(desk.difference(0, 2)) < 1);
   CHECK(browser.evaluate("document.getElementById('now-phase').textContent") == "cruise");
   // a mark says what it is to whoever comes to it by the keyboard
@@ -159,17 +170,20 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
   CHECK(browser.evaluate("document.querySelectorAll('.curve canvas').length") == 3);
   const std::string curves = shown().dump();
   CHECK_THAT(curves, Catch::Contains("x, m") && Catch::Contains("speed, m/s"));
-  CHECK(
-      browser.evaluate("document.querySelector('#channel-list label').textContent").get<std::string>().find("floors") !=
-      std::string::npos);
+  CHECK(browser.evaluate("document.querySelector('#channel-list label').textContent")
+            .get<std::string>()
+            .find("\u00d7 noise") != std::string::npos);
 
   // the button leads to the worst moment, and the words say how large it is: at both ends of the drive the lag is all
   const std::string worst = text("worst-words");
-  CHECK_THAT(worst, Catch::StartsWith("Worst at ") && Catch::Contains("floors off, rms of all channels; most in "));
+  CHECK_THAT(worst, Catch::StartsWith("Worst of this run at ") &&
+                        Catch::Contains("\u00d7 noise off, rms of all channels; most in ") &&
+                        Catch::Contains(": measured ") && Catch::Contains(", simulated ") &&
+                        Catch::Contains(", difference "));
   desk.press("End");
   browser.evaluate("document.getElementById('worst').click()");
   CHECK(worst.find(
-            "Worst at " +
+            "Worst of this run at " +
             browser.evaluate("Number(document.getElementById('ruler').ariaValueNow).toFixed(2)").get<std::string>() +
             " s") == 0);
 
@@ -178,7 +192,7 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
     return browser.evaluate("document.querySelector('.readings').textContent").get<std::string>();
   };
   const std::string at_worst = readings();
-  CHECK_THAT(at_worst, Catch::Contains("floors)"));
+  CHECK_THAT(at_worst, Catch::Contains("\u00d7 noise)"));
   desk.press("Home");
   CHECK(readings() != at_worst);
 
@@ -231,11 +245,10 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
   browser.screenshot(desk.pictures / "playback-exaggerated.png");
 
   // the curve of what is worst is among those that are shown, and its mean there is the one of the words
-  const auto worst_title =
-      worst.substr(worst.find("most in ") + 8, worst.find(", ", worst.find("most in ")) - worst.find("most in ") - 8);
+  const std::size_t most_in = worst.find("most in ") + 8, off = worst.find(", difference ") + 13;
+  const std::string worst_title = worst.substr(most_in, worst.find(": measured", most_in) - most_in);
   CHECK_THAT(shown().dump(), Catch::Contains(worst_title));
-  CHECK_THAT(text("curves"),
-             Catch::Contains("mean " + worst.substr(worst.find(worst_title + ", ") + worst_title.size() + 2, 6)));
+  CHECK_THAT(text("curves"), Catch::Contains("mean " + worst.substr(off, worst.find(' ', off) - off) + ", "));
 
   // after a click Space plays, and presses the button no more
   browser.click("#worst");
@@ -273,7 +286,63 @@ TEST_CASE("In a browser: a playback shows the gap, where it is worst and how lar
              Catch::StartsWith("run-000-") && Catch::EndsWith("s.png"));
   CHECK(browser.evaluate("window.file.type") == "image/png");
   CHECK(browser.evaluate("window.file.size > 20000") == true);
+  // and the page says that it is saved
+  CHECK_THAT(text("about-mark"),
+             Catch::Contains("Picture saved as " + browser.evaluate("window.saved").get<std::string>()));
+  CHECK(text("save") == "Picture saved");
+  browser.wait_for("document.getElementById('save').textContent === 'Save picture'");
   for (const std::string& complaint : browser.complaints()) UNSCOPED_INFO(complaint);
+  CHECK(browser.complaints().empty());
+}
+
+TEST_CASE(
+    "In a browser: with a report's worst moments a playback opens on the worst run, and says whose moment is whose") {
+  PlaybackDesk desk(kReportOfWorst);
+  Browser& browser = desk.browser;
+  const auto text = [&](const std::string& id) {
+    return browser.evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
+  };
+  // the second run, and its figure in the list beside the stage whose gap the share is of
+  CHECK(browser.evaluate("document.getElementById('run').value") == "1");
+  CHECK(text("worst") == "Worst moment of this run");
+  CHECK_THAT(text("worst-words"), Catch::EndsWith("It is the worst of all runs."));
+  CHECK_THAT(text("run"), Catch::Contains("worst 99 \u00d7 noise \u00b7 20 % of the gap from body to sensor") &&
+                              Catch::Contains("worst 7.0 \u00d7 noise \u00b7 80 % of the gap from body to sensor"));
+  CHECK_THAT(text("marks"), Catch::StartsWith("gap of sensors"));
+  CHECK_THAT(text("about-mark"),
+             Catch::Contains("a larger part of the gap from body to sensor: a sensor reports a motion that differs"));
+
+  // the other run names the worst one
+  browser.evaluate(
+      "document.getElementById('run').value = '0', document.getElementById('run').dispatchEvent(new Event('change'))");
+  browser.wait_for("document.querySelectorAll('.mark').length === 2");
+  CHECK_THAT(text("worst-words"), Catch::EndsWith("Worst of all runs: 99 \u00d7 noise at 1.38 s of run-001.csv."));
+
+  // every row of the table of differences is seen without scrolling
+  CHECK(browser.evaluate("(() => { const box = document.getElementById('now').getBoundingClientRect(); return "
+                         "[...document.querySelectorAll('#difference tr')].every((row) => "
+                         "row.getBoundingClientRect().bottom <= box.bottom); })()") == true);
+
+  // the figures of a curve are beside the cursor, and over it
+  browser.evaluate("document.getElementById('worst').click()");
+  browser.evaluate("document.getElementById('play').blur()");
+  desk.press("Home");
+  CHECK(browser.evaluate("[...document.querySelectorAll('.curve figcaption > span')].every((span) => "
+                         "Number(getComputedStyle(span).zIndex) > "
+                         "Number(getComputedStyle(document.getElementById('cursor')).zIndex))") == true);
+  const std::string near =
+      "(() => { const lanes = document.getElementById('lanes').getBoundingClientRect(), cursor = "
+      "document.getElementById('cursor').getBoundingClientRect(); return "
+      "[...document.querySelectorAll('.readings')].every((readings) => { const box = readings.getBoundingClientRect(), "
+      "before = readings.previousElementSibling.getBoundingClientRect(); return box.right <= lanes.right && box.left > "
+      "before.right && (box.left <= cursor.right + 14 || box.left <= before.right + 14) && box.right >= cursor.left - "
+      "14; }); })()";
+  CHECK(browser.evaluate(near) == true);
+  for (int i = 0; i < 100; ++i) desk.press("ArrowRight");
+  CHECK(browser.evaluate(near) == true);
+  desk.press("End");
+  CHECK(browser.evaluate(near) == true);
+  browser.screenshot(desk.pictures / "playback-worst.png");
   CHECK(browser.complaints().empty());
 }
 
