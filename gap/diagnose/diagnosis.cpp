@@ -212,22 +212,6 @@ Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
   return any(Verdict::unknown) || stages.empty() ? Verdict::unknown : Verdict::none;
 }
 
-namespace {
-// Sensors hardly show errors of the description's numbers: the estimate of earlier stages is used if it is larger.
-void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
-                     Predictor& predictor, const StageOptions& options) {
-  double largest = 0;
-  for (std::size_t s = 0; s < stages.size(); ++s) {
-    const StageDecision& decision = stages[s].decision;
-    const double own = numbers_off_of_intervals(decision.data, rest_of(decision.data, decision.best.model),
-                                                decision.best.model.likelihood.discrepancies);
-    largest = std::max(largest, own);
-    const double numbers_off = stages[s].passage == Passage::body_to_sensor ? largest : own;
-    widen_intervals(stages[s], prepared[s], predictor, numbers_off, options);
-  }
-}
-}  // namespace
-
 Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisOptions& options) {
   Diagnosis d;
   d.options = options;
@@ -272,13 +256,13 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
                                            &d.repeats, &d.same_command_sequence, stated_noise(d.observations.dataset)},
                                           d.candidates, predictor);
       if (stage.nominal.data.groups.empty()) continue;
-      d.stages.push_back(diagnose_stage(stage, predictor, stage_options));
+      const Elsewhere elsewhere{{}, {}, numbers_off_elsewhere(d.stages, passage)};
+      d.stages.push_back(diagnose_stage(stage, predictor, stage_options, elsewhere));
       prepared.push_back(std::move(stage));
     }
 
-    // then all stages together: contradictions between them, interval widths, the verdict, and what to drive next
+    // then all stages together: contradictions between them, the verdict, and what to drive next
     settle_by_other_stages(d.stages, prepared, predictor, stage_options);
-    widen_intervals(d.stages, prepared, predictor, stage_options);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
     if (options.propose_next && options.ranks.rank == 0) propose_next(d, options.stop);

@@ -30,6 +30,9 @@ struct RefutedElsewhere {
 struct Elsewhere {
   std::vector<NamedElsewhere> named{};
   std::vector<RefutedElsewhere> refuted{};
+  // Error of the description's numbers, 1 sigma in their typical errors, for the intervals of a stage that hardly shows
+  // it; 0 if no other stage does.
+  double numbers_off = 0;
 
   // Returns the stage that refutes the candidate, if any.
   std::optional<Passage> refutes(std::size_t candidate) const {

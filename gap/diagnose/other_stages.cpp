@@ -131,6 +131,14 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
   return true;
 }
 
+double numbers_off_elsewhere(const std::vector<StageDiagnosis>& stages, Passage passage) {
+  double largest = 0;
+  if (passage != Passage::body_to_sensor) return largest;
+  for (const StageDiagnosis& stage : stages)
+    if (stage.passage != passage) largest = std::max(largest, stage.numbers_off);
+  return largest;
+}
+
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options) {
   // what was refuted once stays refuted: a stage without it would find it again
@@ -139,7 +147,8 @@ void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vect
     for (std::size_t s = 0; s < stages.size(); ++s) {
       const std::vector<RefutedElsewhere> more = refuted_elsewhere(stages, s, prepared, predictor, options.decision);
       refuted[s].insert(refuted[s].end(), more.begin(), more.end());
-      const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s]};
+      const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s],
+                                numbers_off_elsewhere(stages, stages[s].passage)};
       if (concerns(stages[s].decision, prepared[s].candidates, elsewhere))
         stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
     }

@@ -212,8 +212,9 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
                            const Elsewhere& elsewhere) {
   // the nominal model and the best single effects
-  EffectCurves curves = known;
   StageDecision d;
+  d.curves = known;
+  EffectCurves& curves = d.curves;
   take(d, nominal);
   const Model without = nominal_model(d.data);
   d.nominal_deviance = without.deviance();
@@ -254,8 +255,10 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
 
   // adds effects while each gains evidence, then refits them together
   Model chosen = take_effects(d.data, curves, d.singles, simulate, test, settings);
-  if (chosen.places.size() > 1 && look_around(chosen))
+  if (chosen.places.size() > 1 && look_around(chosen)) {
+    fit_again(d.singles, d.data, curves, settings.search.threads);
     chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);
+  }
   d.nominal_deviance = nominal_model(d.data).deviance();
   d.best = without_weak_effects(d.data, curves, simulate, fit_side_by_side(d.data, curves, simulate, std::move(chosen)),
                                 settings);
@@ -278,17 +281,18 @@ OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::siz
   return {model, model};
 }
 
-StageDecision decide_again(StageDecision decided, const OtherModel& other, const EffectCurves& curves,
-                           const Simulate& simulate, const Around& around, const GapTest& test,
-                           const DecisionSettings& settings, const Elsewhere& elsewhere) {
+StageDecision decide_again(StageDecision decided, const OtherModel& other, const Simulate& simulate,
+                           const Around& around, const GapTest& test, const DecisionSettings& settings,
+                           const Elsewhere& elsewhere) {
   StageDecision d = std::move(decided);
   std::vector<std::size_t> candidates;
   for (const Setting& setting : other.model) candidates.push_back(setting.candidate);
   take(d, around(other.around, candidates));
   d.nominal_deviance = nominal_model(d.data).deviance();
-  d.best =
-      fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, other.model, d.best.model));
-  describe(d, curves, simulate, test, settings, elsewhere);
+  fit_again(d.singles, d.data, d.curves, settings.search.threads);
+  d.best = fit_side_by_side(d.data, d.curves, simulate,
+                            simulated_model(d.data, d.curves, simulate, other.model, d.best.model));
+  describe(d, d.curves, simulate, test, settings, elsewhere);
   return d;
 }
 

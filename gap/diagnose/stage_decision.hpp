@@ -100,6 +100,7 @@ struct StageDecision {
   std::vector<ModelEffect> effects;                     // of the best model, in the order of its places
   std::vector<std::vector<Settings>> models_of_rivals;  // by effect: models with its rivals in its place, first kItself
   std::vector<Model> singles;                           // best first
+  EffectCurves curves;                                  // of single effects, as far as the search has followed them
   NoiseFloor floor;                                     // around the best model
   StageData data;
   std::vector<Eigen::MatrixXd> shapes_of_all_numbers;  // likewise, from StageAround
@@ -126,10 +127,10 @@ struct OtherModel {
 OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places);
 // `decided` with the model of a rival of one effect.
 OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::size_t rival);
-// Decides again: the other model becomes the best one, `singles` stay unchanged. The verdict has to be judged again.
-StageDecision decide_again(StageDecision decided, const OtherModel& other, const EffectCurves& curves,
-                           const Simulate& simulate, const Around& around, const GapTest& test,
-                           const DecisionSettings& settings, const Elsewhere& elsewhere = {});
+// Decides again: the other model becomes the best one. The verdict has to be judged again.
+StageDecision decide_again(StageDecision decided, const OtherModel& other, const Simulate& simulate,
+                           const Around& around, const GapTest& test, const DecisionSettings& settings,
+                           const Elsewhere& elsewhere = {});
 
 // Index of the first of an effect's rivals, including itself, that another stage names at a value within both
 // intervals.

@@ -169,6 +169,34 @@ void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision
   if (rivals.size() > 1) decision.verdict = Verdict::ambiguous;
 }
 
+// Widens intervals for errors of the description's numbers, and takes the names of effects away that such errors could
+// be instead.
+void allow_for_numbers(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor,
+                       const StageOptions& options, const Elsewhere& elsewhere) {
+  StageDecision& decision = stage.decision;
+  const Model& best = decision.best.model;
+  stage.numbers_off =
+      numbers_off_of_intervals(decision.data, rest_of(decision.data, best), best.likelihood.discrepancies);
+  const double numbers_off = std::max(stage.numbers_off, elsewhere.numbers_off);
+  if (decision.effects.empty() || numbers_off == 0) return;
+  // effects on the body turn a gyro, too, although they cannot cause its difference from the posture
+  std::vector<std::size_t> of_all_stages(prepared.candidates.size());
+  std::iota(of_all_stages.begin(), of_all_stages.end(), std::size_t{0});
+  const EffectSet valued = effects_of(best);
+  const NumbersOff numbers{.candidates = numbers_but(prepared.candidates, of_all_stages, valued),
+                           .sigma = numbers_off,
+                           .also_before = has_baseline(*prepared.input.features),
+                           .also_without = !places_with_name(decision).empty()};
+  const std::vector<ErrorOfValue> errors =
+      errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), options.seed);
+  for (std::size_t e = 0; e < decision.effects.size(); ++e) {
+    ModelEffect& effect = decision.effects[e];
+    effect.value.value = widened(effect.value.value, errors[e].half_width(), prepared.candidates[effect.candidate]);
+    effect.sure_from = errors[e].four_sigma();
+  }
+  doubt_uncertain_values(decision, prepared.candidates);
+}
+
 // A significant but invisibly small difference without a name is no gap.
 void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings) {
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
@@ -209,8 +237,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   weigh(stage, prepared, predictor, options);
   const auto decided_again = [&](const OtherModel& other) {
     StageDiagnosis again = stage;
-    again.decision =
-        decide_again(stage.decision, other, prepared.curves, simulate, around, test, options.decision, elsewhere);
+    again.decision = decide_again(stage.decision, other, simulate, around, test, options.decision, elsewhere);
     weigh(again, prepared, predictor, options);
     return again;
   };
@@ -246,7 +273,18 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
 
   // only effects with a name and their look-alikes: a name that holds beside an effect without one alone may be half of
   // what the two do together, as a gain of both tracks and an asymmetry that cancels it on one of them
-  if (!places_with_name(stage.decision).empty()) with_alone(places_to_keep(stage.decision), 0);
+  const auto only_names = [&] {
+    bool any_dropped = false;
+    for (;; any_dropped = true) {
+      const std::vector<std::size_t> kept = places_to_keep(stage.decision);
+      if (places_with_name(stage.decision).empty() || kept.size() == stage.decision.effects.size()) return any_dropped;
+      with_alone(kept, 0);
+    }
+  };
+  do {
+    only_names();
+    allow_for_numbers(stage, prepared, predictor, options, elsewhere);
+  } while (only_names());
   doubt_unless_simulated(stage.decision, stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value,
                          options.decision);
   const StageDecision& decision = stage.decision;
@@ -273,29 +311,6 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
                              decision.nominal_deviance - single.deviance(), before > 0 ? 1 - after / before : 0});
   }
   return stage;
-}
-
-void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
-                     const StageOptions& options) {
-  StageDecision& decision = stage.decision;
-  if (decision.effects.empty() || numbers_off == 0) return;
-  // effects on the body turn a gyro, too, although they cannot cause its difference from the posture
-  std::vector<std::size_t> of_all_stages(prepared.candidates.size());
-  std::iota(of_all_stages.begin(), of_all_stages.end(), std::size_t{0});
-  const EffectSet valued = effects_of(decision.best.model);
-  const NumbersOff numbers{.candidates = numbers_but(prepared.candidates, of_all_stages, valued),
-                           .sigma = numbers_off,
-                           .also_before = has_baseline(*prepared.input.features),
-                           .also_without = !places_with_name(decision).empty()};
-  const std::vector<ErrorOfValue> errors =
-      errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), options.seed);
-  for (std::size_t e = 0; e < decision.effects.size(); ++e) {
-    ModelEffect& effect = decision.effects[e];
-    effect.value.value = widened(effect.value.value, errors[e].half_width(), prepared.candidates[effect.candidate]);
-    effect.sure_from = errors[e].four_sigma();
-  }
-  doubt_uncertain_values(decision, prepared.candidates);
-  drop_invisible_gap(stage, options.decision);
 }
 
 }  // namespace kenaf::gap::diagnose

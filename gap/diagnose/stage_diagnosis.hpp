@@ -42,17 +42,14 @@ struct StageDiagnosis {
   Isolability isolability;
   std::vector<SingleEvidence> ranking;  // best first
   std::vector<Dependence> left_over;    // dependences of the residual, largest share first; none if `complete`
+  double numbers_off = 0;  // error of the description's numbers that this stage shows, for intervals (likelihood.hpp)
 
   bool is_measured() const { return !decision.data.groups.empty(); }
 };
 
-// `elsewhere`: findings of other stages (stage_decision.hpp).
+// Intervals allow for errors of the description's numbers (errors_of_values.hpp), and an effect that these could be
+// instead has no name. `elsewhere`: findings of other stages (stage_decision.hpp).
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
-
-// Widens intervals for errors of the description's numbers of `numbers_off`, 1 sigma (errors_of_values.hpp), and takes
-// the names of effects away that such errors could be instead.
-void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
-                     const StageOptions& options);
 
 }  // namespace kenaf::gap::diagnose

@@ -325,13 +325,38 @@ TEST_CASE("Of a decision some effects alone are fitted again without the others"
   REQUIRE(both.effects.size() == 2);
   REQUIRE(both.complete);
   const std::vector<std::size_t> first{0};
-  const StageDecision one = decide_again(both, with_effects_alone(both, first), curves, simulate, around, {}, {});
+  const StageDecision one = decide_again(both, with_effects_alone(both, first), simulate, around, {}, {});
   REQUIRE(candidates_of(one) == std::vector<std::size_t>{both.effects[0].candidate});
   CHECK(one.effects[0].value.value.value == Approx(both.effects[0].value.value.value).margin(2 * 4.0 / kLength));
   // what the other one explained is left, and makes this one less sure
   CHECK_FALSE(one.complete);
   CHECK(one.effects[0].evidence < both.effects[0].evidence);
   CHECK(one.models_of_rivals.size() == 1);
+}
+
+TEST_CASE("Decided again in other noise, single effects gain what they gain if decided in it first") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const StageAround quiet{world().floor(), world().data(0.5 * effects[1] - 0.4 * effects[6] + world().noise(1))};
+  StageAround noisy = quiet;
+  for (StageGroup& group : noisy.data.groups) group.variance *= 4;
+  const Simulate simulate = world().simulate(LinearWorld::linear(effects));
+  const auto around = [](const StageAround& there) {
+    return [&there](const Settings&, std::span<const std::size_t>) { return there; };
+  };
+  const auto first_decided = [&](const StageAround& there) {
+    return decide_stage(there, world().curves(effects, there.data), simulate, around(there), {}, {});
+  };
+  const StageDecision in_quiet = first_decided(quiet), in_noise = first_decided(noisy);
+  REQUIRE(in_quiet.effects.size() == 2);
+  const std::vector<std::size_t> all{0, 1};
+  const StageDecision again =
+      decide_again(in_quiet, with_effects_alone(in_quiet, all), simulate, around(noisy), {}, {});
+  const auto gain = [](const StageDecision& decision) {
+    return decision.nominal_deviance - decision.singles.front().deviance();
+  };
+  CHECK(again.singles.front().places.front().curve == in_noise.singles.front().places.front().curve);
+  CHECK(gain(again) == Approx(gain(in_noise)).epsilon(0.02));
+  CHECK(gain(again) < 0.9 * gain(in_quiet));
 }
 
 TEST_CASE("Each stage looks for what can act in it") {
