@@ -66,19 +66,20 @@ py::tuple diagnose(const fs::path& folder, const py::dict& asked, const fs::path
   Doing doing;
   options.progress = [&doing](const gap::diagnose::Progress& now) { doing.set(now); };
   std::optional<Diagnosis> diagnosis;
+  gap::diagnose::Reports reports;
   run_interruptibly(
       [&](const std::atomic<bool>& stop) {
         options.stop = &stop;
         diagnosis = gap::diagnose::diagnose_dataset(folder, options);
-        if (!out.empty()) gap::diagnose::write_diagnosis(*diagnosis, out);
+        reports = gap::diagnose::reports_of(*diagnosis, out);
+        if (!out.empty()) gap::diagnose::write_diagnosis(*diagnosis, reports, out);
       },
       [&] {
         if (progress.is_none()) return;
         const auto [words, done] = doing.now();
         progress(words, done);
       });
-  return py::make_tuple(gap::diagnose::diagnosis_json(*diagnosis), gap::diagnose::diagnosis_text(*diagnosis),
-                        gap::diagnose::diagnosis_html(*diagnosis, out), gap::diagnose::robot_file(*diagnosis).text);
+  return py::make_tuple(reports.json, gap::diagnose::diagnosis_text(*diagnosis), reports.page, reports.robot.text);
 }
 
 }  // namespace

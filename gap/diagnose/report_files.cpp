@@ -6,6 +6,7 @@
 #include "formats/description/data_files.hpp"
 #include "formats/runs/dataset.hpp"
 #include "formats/runs/whole_file.hpp"
+#include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/report.hpp"
 
 namespace kenaf::gap::diagnose {
@@ -60,25 +61,35 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const Diag
   }
 }
 
-fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
+Reports reports_of(const Diagnosis& d, const fs::path& folder) {
+  const std::vector<Overlay> overlays = simulate_overlays(d);
+  const std::vector<ComparedRun> compared = compared_runs(d, overlays);
+  return {diagnosis_json(d, compared), diagnosis_page(d, overlays, folder.string(), compared), robot_file(d)};
+}
+
+fs::path write_diagnosis(const Diagnosis& d, const Reports& reports, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   if (!d.interrupted.empty() && has_finished_report(folder)) {
-    runs::write_whole_file(folder / kPartialPage, diagnosis_html(d, folder));
-    runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));
+    runs::write_whole_file(folder / kPartialPage, reports.page);
+    runs::write_whole_file(folder / kPartialReport, reports.json);
     return folder / kPartialPage;
   }
   const bool was_of_a_diagnosis = fs::exists(folder / kReport);
-  runs::write_whole_file(folder / kPage, diagnosis_html(d, folder));
-  const RobotFile robot = robot_file(d);
+  runs::write_whole_file(folder / kPage, reports.page);
+  const RobotFile& robot = reports.robot;
   if (!robot.name.empty()) runs::write_whole_file(folder / robot.name, robot.text);
   for (const char* other : kRobotFiles)  // of an earlier diagnosis, which would contradict this one
     if (d.interrupted.empty() && other != robot.name) fs::remove(folder / other, error);
   if (d.interrupted.empty() && was_of_a_diagnosis) fs::remove(folder / kCurvesFile, error);
-  runs::write_whole_file(folder / kReport, diagnosis_json(d));
+  runs::write_whole_file(folder / kReport, reports.json);
   for (const char* partial : {kPartialPage, kPartialReport}) fs::remove(folder / partial, error);
   return folder / kPage;
+}
+
+fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
+  return write_diagnosis(d, reports_of(d, folder), folder);
 }
 
 }  // namespace kenaf::gap::diagnose

@@ -113,9 +113,4 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
   return html + "</body>\n</html>\n";
 }
 
-std::string diagnosis_html(const Diagnosis& d, const std::filesystem::path& folder) {
-  const std::vector<Overlay> overlays = simulate_overlays(d);
-  return diagnosis_page(d, overlays, folder.string(), compared_runs(d, overlays));
-}
-
 }  // namespace kenaf::gap::diagnose

@@ -135,9 +135,9 @@ Json moment_json(const RunMoment* moment) {
           {"channel_times_noise", number(most.times_noise)}};
 }
 
-Json runs_json(const Diagnosis& d) {
+Json runs_json(const Diagnosis& d, std::span<const ComparedRun> compared_runs) {
   Json runs = Json::array();
-  for (const ComparedRun& compared : compared_runs(d, {})) {
+  for (const ComparedRun& compared : compared_runs) {
     const Observation& run = d.observations.runs[compared.run];
     runs.push_back({{"run", run.file},
                     {"manoeuvre", run.manoeuvre},
@@ -231,7 +231,7 @@ void add_main_stage(Json& json, const Diagnosis& d, const StageDiagnosis* stage)
 
 }  // namespace
 
-std::string diagnosis_json(const Diagnosis& d) {
+std::string diagnosis_json(const Diagnosis& d, std::span<const ComparedRun> runs) {
   Json json{{"format", "kenaf-gap-report/2"}, {"verdict", verdict_name(d.verdict)}};
   if (!d.interrupted.empty()) json["interrupted"] = d.interrupted;
   if (!d.options.against.empty())
@@ -245,7 +245,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (std::size_t s = 0; s < d.stages.size(); ++s) json["stages"].push_back(stage_json(d, s));
   const std::optional<std::size_t> main = main_stage(d);
   json["where"] = where_json(d, main);
-  json["runs"] = runs_json(d);
+  json["runs"] = runs_json(d, runs);
   json["effects"] = Json::array();
   for (const StageDiagnosis& stage : d.stages)
     for (const ModelEffect& effect : stage.decision.effects) {

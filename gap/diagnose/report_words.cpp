@@ -355,8 +355,8 @@ std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
   const auto rms = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : std::string("-"); };
   const GapMeasure& gap = stage.gap;
   if (stage.decision.best.model.places.empty())
-    return fmt::format("{} noise units; noise alone: {}", rms(gap.before), rms(gap.floor));
-  return fmt::format("{} noise units before, {} after on {}; noise alone: {}", rms(gap.before), rms(gap.after),
+    return fmt::format("{} times the noise; noise alone: {}", rms(gap.before), rms(gap.floor));
+  return fmt::format("{} times the noise before, {} after on {}; noise alone: {}", rms(gap.before), rms(gap.after),
                      measured_on(d), rms(gap.floor));
 }
 

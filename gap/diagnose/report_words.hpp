@@ -84,7 +84,7 @@ std::string value_in_words(const candidates::Candidate& candidate, const EffectV
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& effect);
 // "not named: com_forward (drive to body): ...", for all effects of all stages.
 std::vector<std::string> all_doubts(const Diagnosis& d);
-// "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".
+// "8.10 times the noise before, 1.90 after on runs held out; noise alone: 1.00".
 std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage);
 // The residual of a stage's best model: "15 % of the gap is left", "what is left is within noise and spread". Empty
 // without a gap.

@@ -46,8 +46,8 @@ std::string verdict_words(const Diagnosis& d, const StageDiagnosis& stage) {
 
 std::string gap_figure(const Diagnosis& d, const StageDiagnosis& stage) {
   plot::RowChart chart;
-  chart.title = fmt::format("The gap on {}, in noise units", measured_on(d));
-  chart.x_label = "rms over all channels (noise units)";
+  chart.title = fmt::format("The gap on {}, in times the noise", measured_on(d));
+  chart.x_label = "rms over all channels (\u00d7 noise)";
   const auto row = [](std::string_view label, double value, Ink ink) {
     return plot::Row{std::string(label), {{value, Shape::bar, ink}}, figure(value)};
   };

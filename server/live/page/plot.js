@@ -44,10 +44,9 @@ export function createPlot(key, removed) {
   const signal = SIGNALS[key], root = element("div", "plot"), about = element("p", "plot-about"), field = element("div", "plot-field"), canvas = element("canvas", "");
   root.dataset.signal = key;
   const name = element("strong", "", `${signal.name}, ${signal.unit}`);
-  if (signal.positive) name.title = `Positive: ${signal.positive}`;
   about.append(name);
   const values = signal.lines.map(([name], i) => {
-    const line = element("span", `c${i + 1}`, `${name} `), value = element("output", "");
+    const line = element("span", `c${i + 1}`, `${signal.positive ?? name} `), value = element("output", "");
     value.ariaLive = "off";
     value.ariaLabel = `${signal.name}, ${name}`;
     line.append(value);

@@ -26,6 +26,8 @@ export function createPosture() {
     const front_m = tracks[0].at[0] + tracks[0].length / 2, rear_m = tracks[tracks.length - 1].at[0] - tracks[tracks.length - 1].length / 2;
     const scale = 110 / (front_m - rear_m + 2 * (about.flipper?.length ?? 0.05));
     for (const svg of [side, back]) add(svg, "line", { class: "level", x1: -58, x2: 58, y1: 0, y2: 0 });
+    add(side, "text", { class: "where", x: -58, y: -33 }).textContent = "front";
+    add(back, "text", { class: "where", x: -58, y: -33 }).textContent = "left";
     const outline = (group, width, height, x, y, className) => add(group, "rect", { class: className, x: (x - width / 2) * scale, y: (-y - height / 2) * scale,
       width: width * scale, height: height * scale, rx: Math.min(height, width) / 2 * scale * (className === "track" ? 1 : 0.25) });
     const front = add(side, "g", {}), rear = add(back, "g", {});

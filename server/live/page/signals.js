@@ -4,7 +4,7 @@ import { angles } from "./world.js";
 const DEG = 180 / Math.PI;
 const four = (values) => ["front left", "front right", "rear left", "rear right"].map((where, i) => [where, (now) => values(now)?.[i]]);
 
-// `positive`: what a positive angle means. `least`: a plot shows at least this from its lowest to its highest value. `zero`: zero is in it.
+// `positive`: what a positive angle means, the label of its line. `least`: a plot shows at least this from its lowest to its highest value. `zero`: zero is in it.
 export const SIGNALS = {
   speed: { name: "Speed", unit: "m/s", least: 0.5, zero: true, lines: [["left", (now) => now.track_mps[0]], ["right", (now) => now.track_mps[1]]] },
   pitch: { name: "Pitch", unit: "\u00b0", positive: "nose down", least: 10, zero: true, lines: [["pitch", (now) => angles(now.q).pitch]] },

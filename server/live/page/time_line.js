@@ -1,6 +1,7 @@
 // The time line under the world: look back, replay, return, and how much of the time is shown.
 import { keyIsTaken } from "./dead_man.js";
 import { ago } from "./past.js";
+import { SPANS_S } from "./time_window.js";
 
 const STEP_S = 1, LONG_STEP_S = 10;
 const REPLAY_S = 10, FRAME_MS = 40;
@@ -36,10 +37,13 @@ export function createTimeLine(history, past, timeWindow, changed) {
     replay.last_ms = now_ms;
     if (next_s >= replay.to_s) live(); else past.lookAt(next_s);
   }, FRAME_MS);
-  function zoom(step) {
-    timeWindow.zoom(step);
+  function shown() {
     update();
     changed();
+  }
+  function zoom(step) {
+    timeWindow.zoom(step);
+    shown();
   }
 
   // The slider's last place is now, whatever now is when it is let go of.
@@ -59,8 +63,8 @@ export function createTimeLine(history, past, timeWindow, changed) {
   });
   by("live").addEventListener("click", live);
   by("replay").addEventListener("click", toggleReplay);
-  by("zoom-time-in").addEventListener("click", () => zoom(-1));
-  by("zoom-time-out").addEventListener("click", () => zoom(1));
+  by("span").append(...SPANS_S.map((span_s) => new Option(`${span_s} s`, span_s)));
+  by("span").addEventListener("change", () => { timeWindow.show(Number(by("span").value)); shown(); });
 
   addEventListener("keydown", (event) => {
     if (keyIsTaken(event)) return;
@@ -83,9 +87,7 @@ export function createTimeLine(history, past, timeWindow, changed) {
     slider.ariaValueText = words;
     by("live").disabled = !past.isBack();
     by("replay").ariaPressed = `${replay !== null}`;
-    by("span-value").textContent = `${timeWindow.span_s()} s`;
-    by("zoom-time-in").disabled = !timeWindow.canZoom(-1);
-    by("zoom-time-out").disabled = !timeWindow.canZoom(1);
+    by("span").value = `${timeWindow.span_s()}`;
   }
   return { update };
 }

@@ -2,7 +2,7 @@
 // away under the cursor.
 import { keep, recall } from "./kept.js";
 
-const SPANS_S = [5, 10, 20, 30, 60, 120, 300];
+export const SPANS_S = [5, 10, 20, 30, 60, 120, 300];
 const USUAL_S = 60;
 
 export function createTimeWindow(history, past) {
@@ -21,18 +21,22 @@ export function createTimeWindow(history, past) {
     return { from_s: to_s - span_s, to_s };
   }
 
+  // One of SPANS_S; what is looked at keeps its place in it.
+  function show(next_s) {
+    const { to_s: end_s } = range();
+    if (past.isBack()) to_s = past.shown_s() + (end_s - past.shown_s()) * next_s / span_s;
+    span_s = next_s;
+    keep("span", span_s);
+  }
+
   return {
     range,
     span_s: () => span_s,
-    // Shows less (-1) or more (1) of the time; what is looked at keeps its place in it.
+    show,
+    // Shows less (-1) or more (1) of the time.
     zoom(by) {
       const next_s = SPANS_S[SPANS_S.indexOf(span_s) + by];
-      if (next_s === undefined) return;
-      const { to_s: end_s } = range();
-      if (past.isBack()) to_s = past.shown_s() + (end_s - past.shown_s()) * next_s / span_s;
-      span_s = next_s;
-      keep("span", span_s);
+      if (next_s !== undefined) show(next_s);
     },
-    canZoom: (by) => SPANS_S[SPANS_S.indexOf(span_s) + by] !== undefined,
   };
 }

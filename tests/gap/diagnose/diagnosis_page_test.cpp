@@ -57,7 +57,7 @@ TEST_CASE("The first screen says where, which, how much, what is left and what n
   CHECK_THAT(answers, Contains("<b>drive_lag</b> lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0"));
   CHECK_THAT(answers,
              Contains("Not named: com_forward (the values fitted to single manoeuvres differ by more than it)."));
-  CHECK_THAT(answers, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25") &&
+  CHECK_THAT(answers, Contains("8.25 times the noise before, 1.50 after on runs held out; noise alone: 1.25") &&
                           Contains("<b>85 % (81 to 88 %)</b> of the squared gap is explained") &&
                           Contains("track_left_mps: 0.05 m/s rms before, 0.0123 after"));
   CHECK_THAT(answers,

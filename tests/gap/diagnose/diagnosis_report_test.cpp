@@ -23,7 +23,7 @@ using nlohmann::json;
 namespace {
 
 json json_of(const Diagnosis& d) {
-  return json::parse(diagnosis_json(d));
+  return json::parse(diagnosis_json(d, compared_runs(d, {})));
 }
 
 // Nothing of it can be drawn, so that writing it simulates nothing.
@@ -359,7 +359,7 @@ TEST_CASE("The text has every value and doubt in words, on one screen") {
              Catch::StartsWith("NAMED: drive_lag explains 85 % of the gap from command to drive; no effect is named "
                                "for the gap from drive to body "));
   CHECK_THAT(text, Contains("drive_lag lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0; explains 85 %"));
-  CHECK_THAT(text, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25"));
+  CHECK_THAT(text, Contains("8.25 times the noise before, 1.50 after on runs held out; noise alone: 1.25"));
   CHECK_THAT(text, Contains("15 % of the gap remains; yaw rate: measured 0.80 of the simulated, in every run; look at "
                             "track.separation_m or friction_across"));
   CHECK_THAT(text, Contains("not named: its value is at the end of its range (") &&

@@ -287,7 +287,7 @@ TEST_CASE("A report and a playback of the same run have the same worst moment, w
       diagnose::observation_of({"a.csv", "go", ""}, runs::read_run(recorded.folder / "a.csv"), "a.csv"));
   d.features = diagnose::compared_features(d.observations, d.options.span_s);
   d.repeats = {{0}};
-  const json of_report = json::parse(diagnose::diagnosis_json(d))["runs"];
+  const json of_report = json::parse(diagnose::diagnosis_json(d, diagnose::compared_runs(d, {})))["runs"];
   REQUIRE(of_report.size() == 1);
   CHECK(of_report[0]["run"] == "a.csv");
   CHECK(of_report[0]["times_noise_corrected"].is_null());

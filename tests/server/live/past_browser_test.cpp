@@ -302,15 +302,23 @@ TEST_CASE("In a browser: a reading that is pressed is plotted, with its values a
   CHECK(desk.browser.evaluate("document.getElementById('past-banner').hidden") == false);
   strike(desk.browser, "End");
 
-  // less of the time
-  strike(desk.browser, "Equal", "+");
-  CHECK(desk.browser.evaluate("document.getElementById('span-value').textContent") == "30 s");
+  // more and less of the time
+  desk.browser.evaluate(
+      "(() => { const span = document.getElementById('span'); span.value = '120'; span.dispatchEvent(new "
+      "Event('change')); })()");
+  strike(desk.browser, "Minus", "-");
+  CHECK(desk.browser.evaluate("document.getElementById('span').value") == "300");
+  for (const char* shorter : {"120", "60", "30"}) {
+    strike(desk.browser, "Equal", "+");
+    CHECK(desk.browser.evaluate("document.getElementById('span').value") == shorter);
+  }
+  CHECK(desk.browser.evaluate("document.getElementById('span').value") == "30");
   desk.browser.evaluate("document.querySelector('[data-signal=\"pitch\"] .plot-remove').click()");
   CHECK(desk.browser.evaluate(plots) == "speed,currents,place");
   desk.browser.evaluate("window.was_open = true, setTimeout(() => location.reload(), 50), 0");
   desk.browser.wait_for("!window.was_open && document.getElementById('link')?.dataset.state === 'good'");
   desk.browser.wait_for(plots + " === 'speed,currents,place'");
-  CHECK(desk.browser.evaluate("document.getElementById('span-value').textContent") == "30 s");
+  CHECK(desk.browser.evaluate("document.getElementById('span').value") == "30");
   // none at all
   desk.browser.evaluate("document.querySelectorAll('.plot-remove').forEach((button) => button.click())");
   CHECK(desk.browser.evaluate("document.getElementById('no-plots').hidden") == false);
