@@ -19,12 +19,18 @@ void unwrap(std::span<double> angles_rad) {
 }
 
 double reachable_angle(double wanted_rad, double present_rad, double min_rad, double max_rad) {
-  constexpr double kTurn_rad = 2 * std::numbers::pi, kRounding_rad = 1e-9;
-  const double wanted = wrap_angle(wanted_rad);
+  // Chosen: half a turn, and a limit, may be written with as few digits as 3.142, and still mean the same angle.
+  constexpr double kTurn_rad = 2 * std::numbers::pi, kRounding_rad = 1e-3;
+
+  // Within a turn each direction has one angle, but for the two ends, which may be the same one: then the end that was
+  // asked for, as the way to the other one leads through the directions between.
+  const bool is_within = wanted_rad >= min_rad - kRounding_rad && wanted_rad <= max_rad + kRounding_rad;
+  if (is_within && max_rad - min_rad <= kTurn_rad + kRounding_rad) return std::clamp(wanted_rad, min_rad, max_rad);
 
   // The nearest of the equivalent angles within the limits.
+  const double wanted = wrap_angle(wanted_rad);
   double best = 0, best_distance = std::numeric_limits<double>::infinity();
-  const double first = wanted + kTurn_rad * std::ceil((min_rad - wanted) / kTurn_rad - kRounding_rad);
+  const double first = wanted + kTurn_rad * std::ceil((min_rad - kRounding_rad - wanted) / kTurn_rad);
   for (double angle = first; angle <= max_rad + kRounding_rad; angle += kTurn_rad) {
     if (std::abs(angle - present_rad) < best_distance) {
       best = std::clamp(angle, min_rad, max_rad);

@@ -14,7 +14,9 @@ double wrap_angle(double angle_rad);
 void unwrap(std::span<double> angles_rad);
 
 // Returns the angle to which a joint with limits turns for a wanted direction: the equivalent angle (modulo a full
-// turn) within the limits that is nearest to the present one, or the nearer limit if none is within them.
+// turn) within the limits that is nearest to the present one, or the nearer limit if none is within them. Limits count
+// as wide as a thousandth of a radian more. If they are a full turn apart at most, a wanted angle within them is itself
+// the answer: half a turn goes to the end that was asked for, wherever the joint is.
 double reachable_angle(double wanted_rad, double present_rad, double min_rad, double max_rad);
 
 }  // namespace kenaf::robot
