@@ -51,10 +51,8 @@ robot::JointCommand joint_command(const physics::RobotDescription& description, 
   const physics::FlipperServoDescription& servo = description.servo;
   const double tip_up = protocol::frames::tip_up_from_usarsim_flipper(flipper, value);
 
-  // Commands are clamped to the joint's range and to what its servo can do.
-  const auto angle = [&](double rad) {
-    return robot::JointCommand{robot::JointMode::angle, std::clamp(rad, joint.min_angle_rad, joint.max_angle_rad)};
-  };
+  // Commands are clamped to what the servo can do. An angle is a direction: the joint turns to it within its range.
+  const auto angle = [&](double rad) { return robot::JointCommand{robot::JointMode::angle, rad}; };
   const auto speed = [&](double radps) {
     return robot::JointCommand{robot::JointMode::speed,
                                std::clamp(radps, -servo.max_speed_radps, servo.max_speed_radps)};
@@ -72,7 +70,8 @@ robot::JointCommand joint_command(const physics::RobotDescription& description, 
     case JointOrder::torque:
       return torque(tip_up);
     case JointOrder::relative_angle:
-      return angle(truth.flipper_rad[flipper] + tip_up);
+      // it says which way round, and so ends at the end of the range
+      return angle(std::clamp(truth.flipper_rad[flipper] + tip_up, joint.min_angle_rad, joint.max_angle_rad));
     case JointOrder::relative_speed:
       return speed(truth.flipper_radps[flipper] + tip_up);
     case JointOrder::relative_torque:

@@ -31,7 +31,8 @@ inline constexpr std::array kUsarsimJoints = {robot::kFrontRight, robot::kFrontL
 std::optional<robot::Flipper> find_flipper(const physics::RobotDescription& robot, std::string_view name);
 
 // Returns the joint command for `value` (USARSim's sign), limited to the robot's abilities; relative orders start from
-// `truth`.
+// `truth`. An angle is passed on as it is, for the joint turns to it as a direction (robot::reachable_angle); a
+// relative one is limited to the joint's range.
 robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
                                   robot::Flipper flipper, JointOrder order, double value);
 

@@ -162,10 +162,26 @@ TEST_CASE("MULTIDRIVE of one flipper leaves the others, and STA tells angles wit
   CHECK(kenaf.truth().flipper_rad[robot::kFrontLeft] == Approx(0.4).margin(0.05));
 }
 
-TEST_CASE("A flipper angle beyond its range is the end of the range") {
-  Kenaf kenaf;
-  kenaf.send("MULTIDRIVE {RRFlipper 99}\r\n");
+TEST_CASE("A flipper angle beyond its range is the same direction within the range, a relative one ends at its end") {
+  Kenaf kenaf;  // -pi to pi
+  // 2 pi + 0.4 = 6.6832 and 0.4 - 2 pi = -5.8832 are 0.4 tip up. Front flippers have the other sign.
+  kenaf.send("MULTIDRIVE {RRFlipper 6.683185307} {RLFlipper 6.683185307} {FRFlipper -6.683185307}\r\n");
+  kenaf.send("DRIVE {Name FLFlipper} {Order 0} {Value 5.883185307}\r\n");
+  REQUIRE(kenaf.run(3));
+  for (const auto flipper : {robot::kRearRight, robot::kRearLeft, robot::kFrontRight, robot::kFrontLeft})
+    CHECK(kenaf.truth().flipper_rad[flipper] == Approx(0.4).margin(0.02));
+  kenaf.send("DRIVE {Name RRFlipper} {Order 10} {Value 4}\r\n");
   CHECK(kenaf.command().flipper[robot::kRearRight].value == kenaf.description().flipper.front().max_angle_rad);
+}
+
+TEST_CASE("Half a turn lifts a flipper over the top, however its digits are rounded") {
+  Kenaf kenaf;
+  // What a program on hrt.h asks for by 180 degrees, and what a client of USARSim writes.
+  kenaf.send(
+      "MULTIDRIVE {RRFlipper 3.14159265358979} {RLFlipper 3.1416} {FRFlipper -3.1416} {FLFlipper -3.14159266}\r\n");
+  REQUIRE(kenaf.run(0.5));
+  // from 1 rad at up to 1.5 rad/s
+  for (const double tip_up_rad : kenaf.truth().flipper_rad) CHECK(tip_up_rad > 1.3);
 }
 
 TEST_CASE("DRIVE orders joints by number, several in one line") {
