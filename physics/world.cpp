@@ -365,6 +365,9 @@ void World::reset_sensor(RobotId id, std::size_t sensor, const std::optional<Gro
                          std::size_t instruments) {
   impl_->robot(id).sensors.at(instruments).reset(sensor, pose);
 }
+void World::reset_track_sensor(RobotId id, std::size_t sensor, robot::Track side) {
+  impl_->robot(id).sensors.front().reset_track(sensor, side);
+}
 
 void World::step() {
   impl_->step();

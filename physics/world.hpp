@@ -81,6 +81,8 @@ class World {
   // std::out_of_range if there are no such sensor or instruments.
   void reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose = {},
                     std::size_t instruments = 0);
+  // The same for one side of the robot's own encoder or tachometer; the other one counts on.
+  void reset_track_sensor(RobotId id, std::size_t sensor, robot::Track side);
 
   // Advances everything by one time step.
   void step();

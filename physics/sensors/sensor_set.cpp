@@ -163,4 +163,8 @@ void SensorSet::reset(std::size_t sensor, const std::optional<GroundTruthReading
         compose({pose->p_WB_m, rotation_from(pose->roll_pitch_yaw_rad)}, inverse(posture_.leveled(now.X_WB)));
 }
 
+void SensorSet::reset_track(std::size_t sensor, robot::Track side) {
+  entries_.at(sensor).state.start_track_m[side] = history_.back(0).track_m[side];
+}
+
 }  // namespace kenaf::physics

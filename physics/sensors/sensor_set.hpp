@@ -27,6 +27,7 @@ class SensorSet {
 
   void read(std::uint64_t step, const RayCaster& cast, std::vector<SensorSample>& out);
   void reset(std::size_t sensor, const std::optional<GroundTruthReading>& pose);
+  void reset_track(std::size_t sensor, robot::Track side);
 
  private:
   struct Entry {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/world_server/encoder_names.hpp"
 #include "server/world_server/joint_orders.hpp"
 #include "server/world_server/scan_angles.hpp"
 #include "server/world_server/verbs.hpp"
@@ -123,7 +124,7 @@ bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Se
     if (!protocol::usarsim::equal_ignoring_case(physics::usarsim_type_name(sensor.type), request.type)) continue;
     const bool encoder = sensor.type == SensorType::encoder;
     // An encoder sensor is listed by its two sides.
-    for (const std::string_view side : {"ECLeft", "ECRight"}) {
+    for (const std::string_view side : kEncoderNames) {
       const std::string_view name = encoder ? side : std::string_view(sensor.name);
       if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(name, request.name)) continue;
       if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);

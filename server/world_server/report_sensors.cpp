@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/world_server/encoder_names.hpp"
 #include "server/world_server/report.hpp"
 #include "server/world_server/scan_angles.hpp"
 #include "server/world_server/wire_frames.hpp"
@@ -66,17 +67,16 @@ void write(const Report& report, const physics::ImuReading& reading) {
 }
 
 void write(const Report& report, const physics::EncoderReading& reading) {
-  constexpr std::array<const char*, robot::kTrackCount> kNames = {"ECLeft", "ECRight"};
   if (report.dialect == Dialect::ut2004) {
     report.begin(false);
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-      report.writer.open_group("Name", kNames[i]).add_integer("Tick", reading.counts[i]).close_group();
+    for (std::size_t i = 0; i < kEncoderNames.size(); ++i) {
+      report.writer.open_group("Name", kEncoderNames[i]).add_integer("Tick", reading.counts[i]).close_group();
     }
     report.writer.end();
     return;
   }
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    report.begin(true).text("Name", kNames[i]).integer("Tick", reading.counts[i]).end();
+  for (std::size_t i = 0; i < kEncoderNames.size(); ++i) {
+    report.begin(true).text("Name", kEncoderNames[i]).integer("Tick", reading.counts[i]).end();
   }
 }
 

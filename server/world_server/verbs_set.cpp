@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/world_server/encoder_names.hpp"
 #include "server/world_server/joint_orders.hpp"
 #include "server/world_server/verbs.hpp"
 #include "server/world_server/wire_frames.hpp"
@@ -17,7 +18,8 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
   if (!order) return "unknown Opcode";
   std::array<double, robot::kFlipperCount> params{};
   const auto count = protocol::usarsim::parse_number_list(text_of(message, "Params"), params);
-  if (*order != JointOrder::brake && (!count || *count == 0)) return "Params is not a number";
+  const bool brakes = *order == JointOrder::brake;  // which needs no number
+  if (!brakes && (!count || *count == 0)) return "Params is not a number";
 
   const std::string_view name = text_of(message, "Name");
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
@@ -25,12 +27,10 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
     robot.command.flipper[flipper] = joint_command(*robot.description, truth, flipper, *order, value);
   };
   if (is_any_of(name, {"AllJoints", "AllAngles"})) {
-    // one value for all, or one for each
+    // One value for all, or one for each. Another number of them is a mistake, such as a decimal comma.
+    if (!brakes && count != 1 && count != kUsarsimJoints.size()) return "Params is neither one number nor four";
     for (std::size_t i = 0; i < kUsarsimJoints.size(); ++i) {
-      if (!robot.description->has(kUsarsimJoints[i])) continue;
-      if (count == 1 || i < count.value_or(0) || *order == JointOrder::brake) {
-        command(kUsarsimJoints[i], count == 1 ? params[0] : params[i]);
-      }
+      if (robot.description->has(kUsarsimJoints[i])) command(kUsarsimJoints[i], count == 1 ? params[0] : params[i]);
     }
   } else if (const auto flipper = find_flipper(*robot.description, name)) {
     command(*flipper, params[0]);
@@ -48,13 +48,23 @@ Reason for_sensors(const SessionRobot& robot, std::string_view type, std::string
   for (std::size_t i = 0; i < robot.description->sensors.size(); ++i) {
     const physics::SensorDescription& sensor = robot.description->sensors[i];
     if (!protocol::usarsim::equal_ignoring_case(physics::usarsim_type_name(sensor.type), type)) continue;
-    // UT2004's encoder has a name for each side, but is a single sensor here.
-    const bool encoder = sensor.type == physics::SensorType::encoder;
-    if (!name.empty() && !encoder && !protocol::usarsim::equal_ignoring_case(sensor.name, name)) continue;
+    if (!name.empty() && !protocol::usarsim::equal_ignoring_case(sensor.name, name)) continue;
     what(i);
     reason = kDone;
   }
   return reason;
+}
+
+Reason reset_sensors(Simulation& simulation, const SessionRobot& robot, std::string_view type, std::string_view name) {
+  // The side that is named, or both without a name.
+  if (is_any_of(type, {"Encoder"})) {
+    for (const robot::Track side : {robot::kLeft, robot::kRight}) {
+      if (!protocol::usarsim::equal_ignoring_case(name, kEncoderNames[side])) continue;
+      return for_sensors(robot, type, {},
+                         [&](std::size_t i) { simulation.world.reset_track_sensor(robot.id, i, side); });
+    }
+  }
+  return for_sensors(robot, type, name, [&](std::size_t i) { simulation.world.reset_sensor(robot.id, i); });
 }
 
 Reason set_ins(Simulation& simulation, const SessionRobot& robot, const MessageView& message) {
@@ -96,8 +106,7 @@ Reason obey_set(Simulation& simulation, Session& session, const MessageView& mes
   if (is_any_of(type, {"Joint"})) return set_joint(simulation, session, message);
   if (is_any_of(type, {"Odometry", "Encoder", "Tachometer"})) {
     if (!is_any_of(opcode, {"RESET"})) return "unknown Opcode";
-    return for_sensors(robot, type, text_of(message, "Name"),
-                       [&](std::size_t i) { simulation.world.reset_sensor(robot.id, i); });
+    return reset_sensors(simulation, robot, type, text_of(message, "Name"));
   }
   if (is_any_of(type, {"INS"})) return set_ins(simulation, robot, message);
   if (is_any_of(type, {"RangeScanner"})) {
@@ -134,15 +143,23 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
   }
   const auto package_index = static_cast<std::size_t>(package - packages.begin());
 
-  // {Link i} starts a set, {Value} and {Order} fill it.
-  std::optional<double> link;
-  double value = 0;
-  auto order = std::optional(JointOrder::angle);
+  // {Link i} starts a set, {Value} and {Order} fill it. A set with anything that cannot be read is skipped.
+  struct LinkSet {
+    std::optional<std::string_view> link;
+    std::string_view value = "0";
+    std::optional<JointOrder> order = JointOrder::angle;
+  } set;
   const auto finish = [&] {
-    if (!link || !order || !(*link >= 1 && *link <= static_cast<double>(package->links.size()))) return;
+    if (!set.link) return;
+    const auto link = protocol::usarsim::parse_number(*set.link);
+    const auto order = set.order;
+    if (!order || !link || !(*link >= 1 && *link <= static_cast<double>(package->links.size())))
+      return complain(simulation, session, "MISPKG: no such link or order", *set.link);
+    const auto value = protocol::usarsim::parse_number(set.value);
+    if (!value) return complain(simulation, session, "MISPKG: Value is not a number", set.value);
     const auto index = static_cast<std::size_t>(*link) - 1;
     const double now_rad = simulation.world.mission_link_rad(robot.id, package_index, index);
-    const double wanted_rad = protocol::frames::rep103_link_from_usarsim(value);
+    const double wanted_rad = protocol::frames::rep103_link_from_usarsim(*value);
     double angle_rad = now_rad;  // brake, and orders that a camera mount cannot execute
     if (*order == JointOrder::angle) angle_rad = wanted_rad;
     if (*order == JointOrder::relative_angle) angle_rad = now_rad + wanted_rad;
@@ -153,13 +170,11 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
   for (const protocol::usarsim::Group& group : message.all()) {
     if (is_any_of(group.key, {"Link"})) {
       finish();
-      link = protocol::usarsim::parse_number(group.value);
-      value = 0;
-      order = JointOrder::angle;
+      set = {.link = group.value};
     } else if (is_any_of(group.key, {"Value"})) {
-      value = protocol::usarsim::parse_number(group.value).value_or(0);
+      set.value = group.value;
     } else if (is_any_of(group.key, {"Order"})) {
-      order = parse_joint_order(group.value);
+      set.order = parse_joint_order(group.value);
     }
   }
   finish();

@@ -315,6 +315,23 @@ TEST_CASE("A reset sensor starts from zero, an INS from the given pose") {
   CHECK_THROWS_AS(world.reset_sensor(id, 9), std::out_of_range);
 }
 
+TEST_CASE("One side of an encoder is reset, and the other one counts on") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.sensors = {sensor_of(SensorType::encoder)};
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 1);
+  world.reset_track_sensor(id, 0, robot::kLeft);
+  run(world, 1);
+  // 0.2 m/s for 1 s on a sprocket of 0.065 m with 2000 counts a turn: 979; for twice as long, less the start: 1950
+  const auto counts = read_one<EncoderReading>(world, id).counts;
+  const double counts_in_1s = 0.2 / 0.065 * 2000 / (2 * std::numbers::pi);
+  CHECK(static_cast<double>(counts[robot::kLeft]) == Approx(counts_in_1s).margin(2));
+  CHECK(counts[robot::kRight] > 1.9 * counts_in_1s);
+  CHECK_THROWS_AS(world.reset_track_sensor(id, 9, robot::kLeft), std::out_of_range);
+}
+
 TEST_CASE("Instruments report what the sensors of a robot would that moves alike, and stay until it is removed") {
   RobotDescription plain = load_robot("kenaf"), biased = plain;
   biased.effects.gyro_bias_z_radps = 0.1;

@@ -1,4 +1,5 @@
 #include "tests/server/world_server/conversation.hpp"
+#include "tests/server/world_server/whole_log.hpp"
 
 namespace kenaf::world_server {
 
@@ -38,6 +39,20 @@ TEST_CASE("SET of all joints takes one angle for all, or one for each in the ord
   CHECK(talk.command().flipper[robot::kRearLeft].value == 0.4);
 }
 
+TEST_CASE("SET of all joints by two numbers or three changes nothing and fails") {
+  Conversation talk = with_robot();
+  const auto before = talk.command().flipper;
+  // -0,5 is a decimal comma, and so two numbers
+  for (const char* params : {"-0,5", "1,2,3", "1,2,3,4,5", "1 2"}) {
+    INFO(params);
+    CHECK(talk.answer_to("SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params " + std::string(params) + "}\r\n") ==
+          "RES {Time 0.0000} {Type Joint} {Name AllJoints} {Status Failed}");
+    for (std::size_t i = 0; i < before.size(); ++i) CHECK(talk.command().flipper[i].value == before[i].value);
+  }
+  CHECK(talk.answer_to("SET {Type Joint} {Name AllJoints} {Opcode Brake}\r\n").ends_with("{Status OK}"));
+  for (const auto& joint : talk.command().flipper) CHECK(joint.mode == robot::JointMode::brake);
+}
+
 TEST_CASE("What cannot be set fails, with a reason for a client with a Session") {
   Conversation talk = with_robot();
   talk.send("CONTROL {Type Session}\r\n");
@@ -45,8 +60,10 @@ TEST_CASE("What cannot be set fails, with a reason for a client with a Session")
        {"SET {Type Joint} {Name Tail} {Opcode Angle} {Params 1}\r\n",
         "SET {Type Joint} {Name FRFlipper} {Opcode Stiffness} {Params 1}\r\n",
         "SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params x}\r\n", "SET {Type Odometry} {Opcode DANCE}\r\n",
-        "SET {Type Odometry} {Name Other} {Opcode RESET}\r\n", "SET {Type INS} {Opcode POSE} {Params 1,2,3}\r\n",
-        "SET {Type Camera} {Opcode Zoom} {Params 99}\r\n", "SET {Type Viewports} {Opcode x}\r\n", "SET\r\n"}) {
+        "SET {Type Odometry} {Name Other} {Opcode RESET}\r\n", "SET {Type Encoder} {Name Bogus} {Opcode RESET}\r\n",
+        "SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params -0,5}\r\n",
+        "SET {Type INS} {Opcode POSE} {Params 1,2,3}\r\n", "SET {Type Camera} {Opcode Zoom} {Params 99}\r\n",
+        "SET {Type Viewports} {Opcode x}\r\n", "SET\r\n"}) {
     INFO(line);
     const std::string answer = talk.answer_to(line);
     CHECK(answer.starts_with("RES {Time 0.0000} {"));
@@ -79,6 +96,29 @@ TEST_CASE("Encoders and odometry start anew, with or without their name") {
            ticks.find("{Name ECLeft Tick -1}") != std::string::npos ||
            ticks.find("{Name ECLeft Tick 1}") != std::string::npos));
   }
+}
+
+TEST_CASE("An encoder's name says which side starts anew, and one that does not exist leaves both alone") {
+  Conversation talk = with_robot();
+  const auto ticks = [&](const std::string& side) {
+    REQUIRE(talk.run(0.2));
+    const std::string line = talk.last("SEN {Type Encoder}");
+    const std::size_t at = line.find("{Name " + side + " Tick ");
+    REQUIRE(at != std::string::npos);
+    return std::stoi(line.substr(at + 12 + side.size()));
+  };
+  // 2 rad/s for about a second at 318 counts a radian: some 600
+  talk.send("DRIVE {Left 2} {Right 2}\r\n");
+  REQUIRE(talk.run(1));
+  talk.send("DRIVE {Left 0} {Right 0}\r\n");
+  REQUIRE(talk.run(0.6));
+  CHECK(talk.answer_to("SET {Type Encoder} {Name Bogus} {Opcode RESET}\r\n").ends_with("{Status Failed}"));
+  CHECK(ticks("ECLeft") > 500);
+  CHECK(talk.answer_to("SET {Type Encoder} {Name ecleft} {Opcode RESET}\r\n").ends_with("{Status OK}"));
+  CHECK(std::abs(ticks("ECLeft")) <= 1);
+  CHECK(ticks("ECRight") > 500);
+  CHECK(talk.answer_to("SET {Type Encoder} {Name ECRight} {Opcode RESET}\r\n").ends_with("{Status OK}"));
+  CHECK(std::abs(ticks("ECRight")) <= 1);
 }
 
 TEST_CASE("INS takes a pose, scanners scan by themselves") {
@@ -130,6 +170,17 @@ TEST_CASE("A camera mount turns by MISPKG and by ACT, and MISSTA tells how far")
   talk.send("MISPKG {Name Arm} {Link 1} {Value 1}\r\n");
   REQUIRE(talk.run(1));
   CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
+}
+
+TEST_CASE("A link of a camera mount whose value is no number stays, the others turn, and the log says so") {
+  const WholeLog log;
+  Conversation talk = with_robot();
+  talk.send("MISPKG {Name CameraPanTilt} {Link 1} {Value 0.5} {Link 2} {Value 0.25}\r\n");
+  REQUIRE(talk.run(1));
+  talk.send("MISPKG {Name CameraPanTilt} {Link 1} {Value 0.1rad} {Link 2} {Value 0.125}\r\n");
+  REQUIRE(talk.run(1));
+  CHECK(talk.last("MISSTA").ends_with("{Link 1} {Value 0.5000} {Torque 0.00} {Link 2} {Value 0.1250} {Torque 0.00}"));
+  CHECK(log.has("MISPKG: Value is not a number: \"0.1rad\""));
 }
 
 TEST_CASE("A camera mount that is told a speed goes to that end of its range") {
