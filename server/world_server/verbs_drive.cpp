@@ -79,19 +79,23 @@ void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
 struct JointSet {
   std::string_view name;
   std::optional<JointOrder> order = JointOrder::angle;
-  double value = 0;
+  std::string_view value = "0";
   bool is_given = false;  // there is an order or a value
 };
 
-// A set with an unknown joint or order is skipped. A name alone is no mistake: drivers of ROS name the robot itself.
+// A set with an unknown joint or order, or a value that is no number, is skipped. A name alone is no mistake: drivers
+// of ROS name the robot itself.
 void obey(Simulation& simulation, Session& session, const physics::RobotTruth& truth, const JointSet& set) {
   SessionRobot& robot = *session.robot;
   const auto flipper = find_flipper(*robot.description, set.name);
-  if (flipper && set.order) {
-    robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *set.order, set.value);
-  } else if (set.is_given) {
-    complain(simulation, session, "DRIVE: no such joint or order", set.name);
+  if (!flipper || !set.order) {
+    if (set.is_given) complain(simulation, session, "DRIVE: no such joint or order", set.name);
+    return;
   }
+  const auto value = protocol::usarsim::parse_number(set.value);
+  if (!value) complain(simulation, session, fmt::format("DRIVE: Value of {} is not a number", set.name), set.value);
+  if (!value && *set.order != JointOrder::brake) return;  // which needs none
+  robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *set.order, value.value_or(0));
 }
 
 // {Name n} opens a set, {Order}, {Value} and {Steer} fill it; missing values are 0. Flippers do not steer.
@@ -108,7 +112,7 @@ void drive_joints(Simulation& simulation, Session& session, const MessageView& m
       set.order = parse_joint_order(group.value);
       set.is_given = true;
     } else if (is_any_of(group.key, {"Value"})) {
-      set.value = protocol::usarsim::parse_number(group.value).value_or(0);
+      set.value = group.value;
       set.is_given = true;
     }
   }
@@ -168,8 +172,12 @@ void multi_drive(Simulation& simulation, Session& session, const MessageView& me
     const physics::RobotTruth truth = simulation.world.truth(robot.id);
     for (const protocol::usarsim::Group& group : message.all()) {
       const auto flipper = find_flipper(*robot.description, group.key);
+      if (!flipper) continue;
       const auto angle_rad = protocol::usarsim::parse_number(group.value);
-      if (!flipper || !angle_rad) continue;
+      if (!angle_rad) {
+        complain(simulation, session, fmt::format("MULTIDRIVE: {} is not a number", group.key), group.value);
+        continue;
+      }
       robot.command.flipper[*flipper] =
           joint_command(*robot.description, truth, *flipper, JointOrder::angle, *angle_rad);
     }

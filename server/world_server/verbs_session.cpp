@@ -29,7 +29,12 @@ std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& 
     complain(simulation, session, "INIT: Location is not a place; the robot starts at a start pose",
              text_of(message, "Location"));
   }
-  if (const auto rotation = read_rotation(message, "Rotation")) X_WB.q = *rotation;
+  if (const auto rotation = read_rotation(message, "Rotation")) {
+    X_WB.q = *rotation;
+  } else if (message.find("Rotation")) {
+    complain(simulation, session, "INIT: Rotation is not roll,pitch,yaw, so it counts as none",
+             text_of(message, "Rotation"));
+  }
   return X_WB;
 }
 

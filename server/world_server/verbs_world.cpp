@@ -14,6 +14,11 @@ constexpr std::size_t kMostOverlapping = 32;  // objects that another one overla
 constexpr double kLargestMovable_m = 20;      // it meets every triangle of the ground within its extent, in each step
 constexpr double kDensity_kgpm3 = 100;        // of movable boxes: light enough for a robot to push
 
+// A name that a request asks for, changed as it was when it was given.
+std::string name_in(const MessageView& message) {
+  return printable(text_of(message, "Name"));
+}
+
 auto find_object(Simulation& simulation, std::string_view name) {
   return std::ranges::find_if(simulation.objects, [name](const WorldObject& object) {
     return protocol::usarsim::equal_ignoring_case(object.name, name);
@@ -48,11 +53,13 @@ Reason create(Simulation& simulation, const MessageView& message) {
   if (!is_box_class(class_name))
     return "only boxes can be created (a class name that ends in Box, Block, Cube or Crate)";
   if (simulation.objects.size() >= kMostObjects) return "too many objects";
-  const std::string name = printable(text_of(message, "Name"));
+  const std::string name = name_in(message);
   if (name.empty()) return "Name is missing";
   if (find_object(simulation, name) != simulation.objects.end()) return "an object of that name exists already";
   const auto location = read_location(message, "Location");
   if (!location) return "Location is not x,y,z";
+  const auto rotation = read_rotation(message, "Rotation");
+  if (!rotation && message.find("Rotation")) return "Rotation is not roll,pitch,yaw";
   protocol::frames::Vector3 size_m{1, 1, 1};
   if (message.find("Scale") && !protocol::usarsim::parse_numbers(text_of(message, "Scale"), size_m))
     return "Scale is not x,y,z";
@@ -65,7 +72,7 @@ Reason create(Simulation& simulation, const MessageView& message) {
   box.name = name;
   box.size_m = vector_from(size_m);
   box.X_WBox.p = *location;
-  box.X_WBox.q = read_rotation(message, "Rotation").value_or(Eigen::Quaterniond::Identity());
+  box.X_WBox.q = rotation.value_or(Eigen::Quaterniond::Identity());
   if (is_any_of(text_of(message, "Physics"), {"RigidBody", "Falling", "Ground"})) {
     if (box.size_m.maxCoeff() > kLargestMovable_m) return "Scale is more than 20, for an object that may move";
     box.mass_kg = kDensity_kgpm3 * box.size_m.prod();
@@ -81,7 +88,7 @@ Reason create(Simulation& simulation, const MessageView& message) {
 }
 
 Reason kill(Simulation& simulation, const MessageView& message) {
-  const auto object = find_object(simulation, text_of(message, "Name"));
+  const auto object = find_object(simulation, name_in(message));
   if (object == simulation.objects.end()) return "no object of that name (a robot leaves with its connection)";
   simulation.world.remove_box(object->box);
   simulation.objects.erase(object);
@@ -127,7 +134,7 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   };
 
   // Objects come first; a robot is moved only if no object has its name.
-  const std::string_view name = text_of(message, "Name");
+  const std::string name = name_in(message);
   if (const auto object = find_object(simulation, name); object != simulation.objects.end()) {
     const physics::Pose X_WBox = moved(simulation.world.box_pose(object->box));
     if (is_too_far(X_WBox)) return "that is farther away than 100 km";
@@ -151,7 +158,7 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
 void get_status(const Simulation& simulation, Session& session, const MessageView& message) {
   // A key that is missing or empty matches all.
   const auto matches = [&](std::string_view key, std::string_view text) {
-    const std::string_view wanted = text_of(message, key);
+    const std::string wanted = printable(text_of(message, key));
     return wanted.empty() || protocol::usarsim::equal_ignoring_case(wanted, text);
   };
   protocol::usarsim::MessageWriter writer(session.out);
@@ -168,9 +175,9 @@ void get_status(const Simulation& simulation, Session& session, const MessageVie
   }
 
   // Then the robot of that name; without a name no robot is listed.
+  const std::string name = name_in(message);
   for (const auto& other : simulation.sessions) {
-    if (!other->robot || !protocol::usarsim::equal_ignoring_case(other->robot->name, text_of(message, "Name")))
-      continue;
+    if (!other->robot || !protocol::usarsim::equal_ignoring_case(other->robot->name, name)) continue;
     const physics::Pose X_WB = simulation.world.truth(other->robot->id).X_WB;
     writer.text("Name", other->robot->name)
         .numbers("Location", wire_vector(X_WB.p), session.formats.value)

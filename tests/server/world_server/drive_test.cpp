@@ -1,4 +1,5 @@
 #include "tests/server/world_server/conversation.hpp"
+#include "tests/server/world_server/whole_log.hpp"
 
 namespace kenaf::world_server {
 
@@ -226,6 +227,28 @@ TEST_CASE("Joints and orders that do not exist change nothing") {
   Kenaf wheels("USARBot.P2DX");
   wheels.send("MULTIDRIVE {FRFlipper 1}\r\nDRIVE {Name FRFlipper} {Value 1}\r\n");
   REQUIRE(wheels.run(0.1));
+}
+
+TEST_CASE("A joint whose value is no number keeps its command, and the log says so") {
+  const auto logged = [](std::string_view line, std::string_view complaint) {
+    const WholeLog log;  // a connection complains once in 5 s, so each line has its own
+    Kenaf kenaf;
+    kenaf.send(line);
+    const double start_rad = kenaf.description().flipper[0].start_angle_rad;
+    CHECK(kenaf.command().flipper[robot::kFrontRight].value == start_rad);
+    CHECK(kenaf.command().flipper[robot::kRearRight].value == 0.25);  // named beside it
+    return log.has(complaint);
+  };
+  CHECK(logged("DRIVE {Name FRFlipper} {Order 0} {Value -0.5rad} {Name RRFlipper} {Order 0} {Value 0.25}\r\n",
+               "DRIVE: Value of FRFlipper is not a number: \"-0.5rad\""));
+  CHECK(logged("DRIVE {Name RRFlipper} {Value 0.25} {Name FRFlipper} {Value }\r\n",
+               "DRIVE: Value of FRFlipper is not a number: \"\""));
+  CHECK(logged("MULTIDRIVE {FRFlipper 0.5rad} {RRFlipper 0.25}\r\n",
+               "MULTIDRIVE: FRFlipper is not a number: \"0.5rad\""));
+  // A brake needs no value.
+  Kenaf kenaf;
+  kenaf.send("DRIVE {Name FRFlipper} {Order 3} {Value x}\r\n");
+  CHECK(kenaf.command().flipper[robot::kFrontRight].mode == JointMode::brake);
 }
 
 TEST_CASE("The light is switched and told") {

@@ -1,6 +1,7 @@
 // Placing a robot, with every oddity of real clients. What they send is named by its source: THAF, ROSU, RCRP, MRL,
 // AP2DX, MALDO, AUT, MAK are client programs, see docs/world-server-protocol.md.
 #include "tests/server/world_server/conversation.hpp"
+#include "tests/server/world_server/whole_log.hpp"
 
 namespace kenaf::world_server {
 
@@ -78,6 +79,21 @@ TEST_CASE("Nose up is a positive pitch of USARSim's") {
   const std::string truth = talk.last("SEN {Time 0.0000} {Type GroundTruth}");
   CHECK(angle_in(truth, "Orientation", 1) == Approx(0.3).margin(0.006));
   CHECK(number_in(truth, "Location", 2) == Approx(-2).margin(0.006));  // above ground: negative
+}
+
+TEST_CASE("A place or a rotation that is none is left out, and the log says so") {
+  const auto logged = [](const char* groups, std::string_view complaint, const Eigen::Vector3d& p_WB) {
+    const WholeLog log;
+    Conversation talk;
+    talk.send("INIT {ClassName USARBot.Kenaf} " + std::string(groups) + "\r\n");
+    REQUIRE(talk.session->robot);
+    CHECK(talk.truth().X_WB.p.head<2>() == p_WB.head<2>());
+    CHECK(physics::roll_pitch_yaw(talk.truth().X_WB.q).norm() == Approx(0).margin(1e-9));
+    return log.has(complaint);
+  };
+  CHECK(logged("{Location 1,2,-3} {Rotation 0,90}",
+               "INIT: Rotation is not roll,pitch,yaw, so it counts as none: \"0,90\"", {1, -2, 0}));
+  CHECK(logged("{Location 1,2}", "INIT: Location is not a place", {0, 0, 0}));
 }
 
 TEST_CASE("Start names a start pose without case, and wins over Location") {

@@ -65,6 +65,29 @@ TEST_CASE("GetSTA tells objects by name or class, all in one line") {
   CHECK(controller.control("{Type GetSTA} {Name a}").find("{Name B}") == std::string::npos);
 }
 
+TEST_CASE("An object is found by the name that it was given, whatever the server shows of it") {
+  // UTF-8's two bytes of the umlaut are shown as two question marks, and of 70 bytes 64 are.
+  for (const std::string& name : {std::string("Kiste_\xc3\xa4"), std::string(70, 'n')}) {
+    INFO(name);
+    Controller controller;
+    CHECK(controller.ok("{Type Create} {ClassName Box} {Name " + name + "} {Location 0,0,-1}"));
+    CHECK_FALSE(controller.ok("{Type Create} {ClassName Box} {Name " + name + "} {Location 9,0,-1}"));
+    CHECK(controller.ok("{Type AbsMove} {Name " + name + "} {Location 5,0,-1}"));
+    CHECK(controller.control("{Type GetSTA} {Name " + name + "}").find("{Location 5.0000,0.0000,-1.0000}") !=
+          std::string::npos);
+    CHECK(controller.ok("{Type Kill} {Name " + name + "}"));
+    CHECK(controller.control("{Type GetSTA}") == "STA");
+  }
+}
+
+TEST_CASE("A robot is found by the name that it was given, whatever the server shows of it") {
+  Controller controller;
+  Session& robot = controller.simulation.connect("robot");
+  controller.send(robot, "INIT {ClassName USARBot.Kenaf} {Name R\xc3\xa4} {Location 0,0,0}\r\n");
+  CHECK(controller.ok("{Type AbsMove} {Name R\xc3\xa4} {Location 3,-2,-1}"));
+  CHECK(controller.control("{Type GetSTA} {Name R\xc3\xa4}").starts_with("STA {Name R??} {Location 3.0000,"));
+}
+
 TEST_CASE("KillAll takes what is inside its corners, or everything, a permanent object stays") {
   Controller controller;
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 0,0,-1}"));
@@ -108,6 +131,7 @@ TEST_CASE("What cannot be done is refused with a reason") {
        {"{Type Create} {ClassName USARPhysObj.Forklift} {Name F} {Location 0,0,0}",
         "{Type Create} {ClassName Box} {Name A} {Location 0,0,0}", "{Type Create} {ClassName Box} {Location 0,0,0}",
         "{Type Create} {ClassName Box} {Name Z} {Location 0,0}",
+        "{Type Create} {ClassName Box} {Name Z} {Location 0,0,0} {Rotation 0,90}",
         "{Type Create} {ClassName Box} {Name Z} {Location 0,0,1e300}",
         "{Type Create} {ClassName Box} {Name Z} {Location 0,0,0} {Scale 0,1,1}",
         "{Type Create} {ClassName Box} {Name Z} {Location 0,0,0} {Scale 1,1}", "{Type Create}",
