@@ -17,24 +17,24 @@ double seconds(CommanderSession::Duration duration) {
 
 }  // namespace
 
-void CommanderSession::on_datagram(const protocol::relay::Datagram& datagram, const Address& from, TimePoint now) {
+void CommanderSession::on_datagram(const protocol::relay::Datagram& datagram, const Peer& from, TimePoint now) {
   if (const auto* command = std::get_if<protocol::relay::Command>(&datagram)) take(*command, from, now);
   if (const auto* hello = std::get_if<protocol::relay::Hello>(&datagram)) take(*hello, from, now);
   if (const auto* ping = std::get_if<protocol::relay::Ping>(&datagram)) take(*ping, from, now);
   if (const auto* bye = std::get_if<protocol::relay::Bye>(&datagram)) take(*bye, from, now);
 }
 
-bool CommanderSession::is_commander(std::uint64_t session, const Address& from) {
+bool CommanderSession::is_commander(std::uint64_t session, const Peer& from) {
   if (phase_ == Phase::none || session != hello_.session) return false;
-  if (from == commander_) return true;
+  if (from.address == commander_.address) return true;
   if (const auto held_back = log_stranger_.allow()) {
-    spdlog::warn("{} sends in the session of {}: ignored ({} more before)", to_text(from), to_text(commander_),
-                 *held_back);
+    spdlog::warn("{} sends in the session of {}: ignored ({} more before)", to_text(from.address),
+                 to_text(commander_.address), *held_back);
   }
   return false;
 }
 
-void CommanderSession::take(const protocol::relay::Hello& hello, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Hello& hello, const Peer& from, TimePoint now) {
   // A bad Hello is refused, but no faster than the limiter allows: the sender may be forged.
   if (const char* wrong = out_of_range(hello)) {
     if (answers_to_strangers_.allow(now))
@@ -45,12 +45,14 @@ void CommanderSession::take(const protocol::relay::Hello& hello, const Address& 
   // While a session is open, its commander's Hello is a repetition, answered again once the world is ready; any other
   // Hello is refused.
   if (is_open()) {
-    if (hello.session != hello_.session || from != commander_) {
+    if (hello.session != hello_.session || from.address != commander_.address) {
       if (!answers_to_strangers_.allow(now)) return;
-      refuse(hello.session, from, protocol::relay::RefusedReason::busy,
-             fmt::format("{} has commanded the robot for {:.1f} s", to_text(commander_), seconds(now - opened_)));
+      refuse(
+          hello.session, from, protocol::relay::RefusedReason::busy,
+          fmt::format("{} has commanded the robot for {:.1f} s", to_text(commander_.address), seconds(now - opened_)));
       return;
     }
+    commander_ = from;
     heard_ = now;
     if (phase_ == Phase::opening) return tell_of_slow_world(now);
     send_welcome();
@@ -94,7 +96,7 @@ void CommanderSession::on_world_ready(const WorldReady& ready, TimePoint now) {
   phase_ = Phase::active;
   heard_ = now;
   welcome_ = {hello_.session, ready.robot_time_s, ready.period_s, ready.lockstep};
-  spdlog::info("{} commands the robot: period {} s{}", to_text(commander_), ready.period_s,
+  spdlog::info("{} commands the robot: period {} s{}", to_text(commander_.address), ready.period_s,
                ready.lockstep ? ", lock step" : "");
   send_welcome();
 }
@@ -121,14 +123,14 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
   if (!stopped_by_silence_ && state_.robot.robot_time_s - commanded_s_ > hello_.command_timeout_s) {
     stopped_by_silence_ = true;
     port_.stop_robot();
-    spdlog::warn("no command from {} for {} s of robot time: robot stopped", to_text(commander_),
+    spdlog::warn("no command from {} for {} s of robot time: robot stopped", to_text(commander_.address),
                  hello_.command_timeout_s);
   }
   if (stopped_by_silence_) state_.robot.stopped_by_silence = true;
   send_state(now);
 }
 
-void CommanderSession::take(const protocol::relay::Command& command, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Command& command, const Peer& from, TimePoint now) {
   if (!is_commander(command.session, from)) {
     if ((command.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
       refuse(command.session, from, protocol::relay::RefusedReason::unknown_session,
@@ -145,7 +147,8 @@ void CommanderSession::take(const protocol::relay::Command& command, const Addre
   }
   if (const char* wrong = out_of_range(command)) {
     if (const auto held_back = log_range_.allow(now)) {
-      spdlog::warn("command {} of {} refused: {} ({} more before)", command.sequence, to_text(from), wrong, *held_back);
+      spdlog::warn("command {} of {} refused: {} ({} more before)", command.sequence, to_text(from.address), wrong,
+                   *held_back);
     }
     refuse(command.session, from, protocol::relay::RefusedReason::bad_request, wrong);
     return;
@@ -153,7 +156,7 @@ void CommanderSession::take(const protocol::relay::Command& command, const Addre
   if (command.frame > state_.robot.frame) {
     if (const auto held_back = log_future_.allow(now)) {
       spdlog::warn("command {} of {} answers frame {}, which was not sent yet: ignored ({} more before)",
-                   command.sequence, to_text(from), command.frame, *held_back);
+                   command.sequence, to_text(from.address), command.frame, *held_back);
     }
     return;
   }
@@ -168,7 +171,7 @@ void CommanderSession::accept(const protocol::relay::Command& command) {
   port_.drive(command, command.frame == 0 ? std::nullopt : std::optional(command.frame - frame_offset_));
 }
 
-void CommanderSession::take(const protocol::relay::Ping& ping, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Ping& ping, const Peer& from, TimePoint now) {
   if (!is_commander(ping.session, from)) {
     if ((ping.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
       refuse(ping.session, from, protocol::relay::RefusedReason::unknown_session,
@@ -184,7 +187,7 @@ void CommanderSession::on_pong(std::uint32_t id, TimePoint) {
   if (phase_ == Phase::active) port_.send(commander_, protocol::relay::Pong{hello_.session, id});
 }
 
-void CommanderSession::take(const protocol::relay::Bye& bye, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Bye& bye, const Peer& from, TimePoint now) {
   if (is_commander(bye.session, from)) end("said goodbye", now);
 }
 
@@ -239,13 +242,13 @@ std::optional<CommanderSession::TimePoint> CommanderSession::next_deadline() con
 void CommanderSession::end(std::string_view why, TimePoint now) {
   if (is_open()) {
     ended_[next_ended_++ % ended_.size()] = {hello_.session, now};
-    spdlog::info("{} {}: session over after {:.1f} s", to_text(commander_), why, seconds(now - opened_));
+    spdlog::info("{} {}: session over after {:.1f} s", to_text(commander_.address), why, seconds(now - opened_));
     port_.close_world();
   }
   phase_ = Phase::none;
 }
 
-void CommanderSession::refuse(std::uint64_t session, const Address& to, protocol::relay::RefusedReason reason,
+void CommanderSession::refuse(std::uint64_t session, const Peer& to, protocol::relay::RefusedReason reason,
                               std::string_view text) {
   protocol::relay::Refused refused{session, reason, {}, std::min(text.size(), protocol::relay::kMaxReasonBytes)};
   std::copy_n(text.begin(), refused.text_length, refused.text.begin());

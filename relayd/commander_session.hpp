@@ -22,7 +22,7 @@ namespace kenaf::relayd {
 // Requirements of a session on the relay around it.
 class SessionPort {
  public:
-  virtual void send(const Address& to, const protocol::relay::Datagram& datagram) = 0;
+  virtual void send(const Peer& to, const protocol::relay::Datagram& datagram) = 0;
   // Starts a session with the world; CommanderSession::on_world_ready() or on_world_lost() follows, at once or later.
   virtual void open_world(const protocol::relay::Hello& hello) = 0;
   virtual void close_world() = 0;  // stops the robot and lets robot time run
@@ -57,7 +57,7 @@ class CommanderSession {
 
   explicit CommanderSession(SessionPort& port) : port_(port) {}
 
-  void on_datagram(const protocol::relay::Datagram& datagram, const Address& from, TimePoint now);
+  void on_datagram(const protocol::relay::Datagram& datagram, const Peer& from, TimePoint now);
   void on_world_ready(const WorldReady& ready, TimePoint now);
   void on_frame(const WorldFrame& frame, TimePoint now);
   void on_pong(std::uint32_t id, TimePoint now);
@@ -73,7 +73,7 @@ class CommanderSession {
   // Returns the session that commands the robot or is about to, 0 = none.
   std::uint64_t session() const { return is_open() ? hello_.session : 0; }
   bool is_opening() const { return phase_ == Phase::opening; }
-  const Address& commander() const { return commander_; }
+  const Address& commander() const { return commander_.address; }
 
  private:
   enum class Phase {
@@ -84,14 +84,14 @@ class CommanderSession {
   };
 
   bool is_open() const { return phase_ == Phase::opening || phase_ == Phase::active; }
-  bool is_commander(std::uint64_t session, const Address& from);
-  void take(const protocol::relay::Hello& hello, const Address& from, TimePoint now);
-  void take(const protocol::relay::Command& command, const Address& from, TimePoint now);
-  void take(const protocol::relay::Ping& ping, const Address& from, TimePoint now);
-  void take(const protocol::relay::Bye& bye, const Address& from, TimePoint now);
+  bool is_commander(std::uint64_t session, const Peer& from);
+  void take(const protocol::relay::Hello& hello, const Peer& from, TimePoint now);
+  void take(const protocol::relay::Command& command, const Peer& from, TimePoint now);
+  void take(const protocol::relay::Ping& ping, const Peer& from, TimePoint now);
+  void take(const protocol::relay::Bye& bye, const Peer& from, TimePoint now);
   void tell_of_slow_world(TimePoint now);
   void accept(const protocol::relay::Command& command);
-  void refuse(std::uint64_t session, const Address& to, protocol::relay::RefusedReason reason, std::string_view text);
+  void refuse(std::uint64_t session, const Peer& to, protocol::relay::RefusedReason reason, std::string_view text);
   void send_welcome();
   void send_state(TimePoint now);
   void end(std::string_view why, TimePoint now);
@@ -100,7 +100,7 @@ class CommanderSession {
   Phase phase_ = Phase::none;
   protocol::relay::Hello hello_{};
   protocol::relay::Welcome welcome_{};
-  Address commander_;
+  Peer commander_;
   TimePoint opened_, heard_, sent_;
 
   protocol::relay::State state_{};       // as last sent

@@ -94,19 +94,16 @@ void Relay::shut_down() {
 void Relay::receive_commands() {
   std::array<pollfd, 2> watched{{{udp_.get(), POLLIN, 0}, {receiver_waker_.fd(), POLLIN, 0}}};
   while (!threads_end_) {
-    sockaddr_storage from{};
-    socklen_t size = sizeof from;
-    const ssize_t got =
-        ::recvfrom(udp_.get(), received_.data(), received_.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
-    if (got < 0) {
-      ::poll(watched.data(), watched.size(), -1);
+    Peer from;
+    if (const auto bytes = receive_from(udp_.get(), received_, from)) {
+      take_datagram(*bytes, from);
     } else {
-      take_datagram(static_cast<std::size_t>(got), address_of(from));
+      ::poll(watched.data(), watched.size(), -1);
     }
   }
 }
 
-void Relay::take_datagram(std::size_t bytes, const Address& from) {
+void Relay::take_datagram(std::size_t bytes, const Peer& from) {
   const protocol::DecodeError error = protocol::relay::decode({received_.data(), bytes}, arrival_.datagram);
   const bool for_the_relay = std::visit(
       [](const auto& datagram) {
@@ -117,7 +114,7 @@ void Relay::take_datagram(std::size_t bytes, const Address& from) {
       arrival_.datagram);
   if (error != protocol::DecodeError::none || !for_the_relay) {
     if (const auto held_back = log_malformed_.allow()) {
-      spdlog::warn("{} bytes from {} ignored: {} ({} more before)", bytes, to_text(from),
+      spdlog::warn("{} bytes from {} ignored: {} ({} more before)", bytes, to_text(from.address),
                    error == protocol::DecodeError::none ? "only a relay sends this kind" : protocol::describe(error),
                    *held_back);
     }
@@ -273,13 +270,11 @@ void Relay::wait_for_alarm() {
 
 // --- requests of the session
 
-void Relay::send(const Address& to, const protocol::relay::Datagram& datagram) {
+void Relay::send(const Peer& to, const protocol::relay::Datagram& datagram) {
   std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
   const std::size_t size = protocol::relay::encode(datagram, bytes);
-  const Endpoint endpoint = endpoint_of(to, is_ipv4(address_) ? AF_INET : AF_INET6);
   // A datagram that cannot be sent counts as lost, which the protocol tolerates.
-  ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&endpoint.address),
-           endpoint.size);
+  send_to(udp_.get(), is_ipv4(address_) ? AF_INET : AF_INET6, std::span(bytes).first(size), to);
 }
 
 void Relay::open_world(const protocol::relay::Hello& hello) {

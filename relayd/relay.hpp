@@ -54,12 +54,12 @@ class Relay : private SessionPort {
 
   struct Arrival {
     protocol::relay::Datagram datagram;
-    Address from;
+    Peer from;
   };
 
   // The receiver's thread.
   void receive_commands();
-  void take_datagram(std::size_t bytes, const Address& from);
+  void take_datagram(std::size_t bytes, const Peer& from);
 
   // Any thread, once it has brought something: decides, or leaves that to a thread that is at it.
   void attend() {
@@ -84,7 +84,7 @@ class Relay : private SessionPort {
   // The timekeeper's thread.
   void wait_for_alarm();
 
-  void send(const Address& to, const protocol::relay::Datagram& datagram) override;
+  void send(const Peer& to, const protocol::relay::Datagram& datagram) override;
   void open_world(const protocol::relay::Hello& hello) override;
   void close_world() override;
   void drive(const protocol::relay::Command& command, std::optional<std::int64_t> world_frame) override;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -54,6 +55,18 @@ Address parse_address(std::string_view text);
 // Returns a bound, non-blocking UDP socket; `bound` becomes its address. On [::] it gets the datagrams of both
 // families.
 Descriptor open_udp(const Address& address, Address& bound);
+
+// Who sent a datagram, and which address of this machine it was sent to. An answer has to come from there: a peer whose
+// socket is connected takes it from no other, and a socket on 0.0.0.0 or [::] would answer from any that leads there.
+struct Peer {
+  Address address;
+  Address reached{};  // without port; empty: the system chooses
+};
+
+// Of a socket from open_udp(), without waiting. Returns the size of the next datagram; nullopt: there is none.
+std::optional<std::size_t> receive_from(int fd, std::span<std::byte> bytes, Peer& from);
+// `family`: the socket's. A datagram that cannot be sent is lost.
+void send_to(int fd, int family, std::span<const std::byte> bytes, const Peer& to);
 
 // For poll(): milliseconds until `until`, rounded up so that poll() does not return just before it; a minute at most.
 int poll_timeout(std::chrono::steady_clock::time_point until);

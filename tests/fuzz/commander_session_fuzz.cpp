@@ -31,9 +31,9 @@ struct Bytes {
 };
 
 struct Port : SessionPort {
-  void send(const Address& to, const protocol::relay::Datagram& datagram) override {
-    if (std::holds_alternative<protocol::relay::State>(datagram)) require(to == opener);
-    if (std::holds_alternative<protocol::relay::Welcome>(datagram)) require(open && to == opener);
+  void send(const Peer& to, const protocol::relay::Datagram& datagram) override {
+    if (std::holds_alternative<protocol::relay::State>(datagram)) require(to.address == opener);
+    if (std::holds_alternative<protocol::relay::Welcome>(datagram)) require(open && to.address == opener);
   }
   void open_world(const protocol::relay::Hello& hello) override {
     require(!open);
@@ -81,7 +81,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     port.sender.port = static_cast<std::uint16_t>(1 + what / 16 % 3);
     const std::uint64_t id = 1 + bytes.next() % 4;
     const auto datagram = [&](const protocol::relay::Datagram& content) {
-      session.on_datagram(content, port.sender, now);
+      session.on_datagram(content, {port.sender}, now);
     };
     switch (what % 10) {
       case 0:

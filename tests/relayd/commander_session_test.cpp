@@ -23,7 +23,9 @@ Address numbered_address(int i) {
 const Address kFirst = parse_address("127.0.0.1:1111"), kSecond = parse_address("127.0.0.1:2222");
 
 struct FakePort : SessionPort {
-  void send(const Address& to, const protocol::relay::Datagram& datagram) override { sent.emplace_back(to, datagram); }
+  void send(const Peer& to, const protocol::relay::Datagram& datagram) override {
+    sent.emplace_back(to.address, datagram);
+  }
   void open_world(const protocol::relay::Hello&) override { ++opened; }
   void close_world() override { ++closed; }
   void drive(const protocol::relay::Command& command, std::optional<std::int64_t> frame) override {
@@ -43,7 +45,7 @@ struct Fixture {
   ~Fixture() { spdlog::set_level(spdlog::level::info); }
 
   void from(const Address& address, const protocol::relay::Datagram& datagram) {
-    session.on_datagram(datagram, address, now);
+    session.on_datagram(datagram, {address}, now);
   }
   void hello(const Address& address, std::uint64_t id) {
     from(address, protocol::relay::Hello{id, 0.01, 0.5, true, false});

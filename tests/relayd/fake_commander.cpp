@@ -7,7 +7,6 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "tests/support/loopback.hpp"
 #include "tests/support/patience.hpp"
 #include "tests/support/robot_command.hpp"
 
@@ -21,9 +20,12 @@ constexpr int kResend_ms = 4;
 }  // namespace
 
 FakeCommander::FakeCommander(std::uint16_t relay_port, std::uint64_t session)
-    : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)), session_(session) {
-  const sockaddr_in address = loopback(relay_port);
-  if (::connect(fd_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    : FakeCommander(relayd::parse_address("127.0.0.1:" + std::to_string(relay_port)), session) {}
+
+FakeCommander::FakeCommander(const relayd::Address& relay, std::uint64_t session) : session_(session) {
+  const relayd::Endpoint endpoint = relayd::endpoint_of(relay, relayd::is_ipv4(relay) ? AF_INET : AF_INET6);
+  fd_ = relayd::Descriptor(::socket(endpoint.address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (::connect(fd_.get(), reinterpret_cast<const sockaddr*>(&endpoint.address), endpoint.size) != 0) {
     throw std::runtime_error("connect");
   }
 }

@@ -17,6 +17,8 @@ namespace kenaf::test {
 class FakeCommander {
  public:
   FakeCommander(std::uint16_t relay_port, std::uint64_t session);
+  // To another address of this machine.
+  FakeCommander(const relayd::Address& relay, std::uint64_t session);
 
   void send(const protocol::relay::Datagram& datagram);
   void send_bytes(std::span<const std::byte> bytes);

@@ -75,6 +75,35 @@ TEST_CASE("A relay on [::] serves commanders of IPv4 too, and names them by thei
   CHECK(relay.log().count("any program that reaches this address") == 1);
 }
 
+// All of 127.0.0.0/8 are this machine's. The system would answer from 127.0.0.1, which a connected socket does not
+// take.
+TEST_CASE("A relay on every address answers from the one that its commander asked") {
+  FakeWorld world;
+  for (const std::string listen : {"0.0.0.0:0", "[::]:0"}) {
+    if (listen.starts_with("[") && !has_ipv6_loopback()) continue;
+    INFO(listen);
+    RunningRelay relay(world.port(), listen);
+    relayd::Address address = relayd::parse_address("127.0.0.2:0");
+    address.port = relay.port();
+    FakeCommander commander(address, 7), stranger(address, 8);
+    REQUIRE(is_welcome(commander.hello(true)));
+    CHECK(commander.next_state(0, protocol::relay::Ping{7, 0}));
+    CHECK(refusal(stranger.hello(true)).reason == protocol::relay::RefusedReason::busy);
+    commander.send(protocol::relay::Bye{7});
+  }
+}
+
+TEST_CASE("A relay on [::] answers commanders of IPv6 and of 127.0.0.1") {
+  if (!has_ipv6_loopback()) return;
+  FakeWorld world;
+  RunningRelay relay(world.port(), "[::]:0");
+  relayd::Address address = relayd::parse_address("[::1]:0");
+  address.port = relay.port();
+  FakeCommander commander(address, 7), stranger(relay.port(), 8);
+  CHECK(is_welcome(commander.hello(true)));
+  CHECK(refusal(stranger.hello(true)).reason == protocol::relay::RefusedReason::busy);
+}
+
 TEST_CASE("Loss, reordering and duplicates change nothing but latency") {
   std::vector<std::string> clean;
   std::vector<protocol::relay::State> clean_states;
