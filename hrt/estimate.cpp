@@ -36,6 +36,12 @@ const Estimate& Estimator::update(const robot::State& state) {
   if (first) t_ns_ = t_ns;
   // A clock that was set back gives no interval for this cycle; the next cycle is measured from it.
   const std::int64_t dt_ns = std::max<std::int64_t>(0, t_ns - t_ns_);
+  now.world_was_reset = t_ns < t_ns_;
+  // Encoders and orientation begin anew: the step from their last values to these is no motion.
+  if (now.world_was_reset) {
+    has_travel_ = has_posture_ = false;
+    posture_gap_s_ = gap_turn_rad_ = 0;
+  }
   t_ns_ = t_ns;
   passed_ns_ += std::min(dt_ns, std::numeric_limits<std::int64_t>::max() - passed_ns_);
   now.dt_s = static_cast<double>(dt_ns) * 1e-9;

@@ -37,6 +37,9 @@ constexpr double kCycleRounding = 1e-3;
 // Room from the start; more needs an allocation in a cycle.
 constexpr std::size_t kMostWarning = 2048, kMostDue = 256;
 
+constexpr std::string_view kWorldWasReset =
+    "somebody reset the world during this motion: the robot is back at its start; begin the motion again from there";
+
 constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
 
 }  // namespace
@@ -482,6 +485,10 @@ void Robot::take(const robot::State& state, const robot::Command& in_force) {
   measured_at_ = Clock::now();
   in_force_ = in_force;
   estimate_ = estimator_.update(state);
+  if (estimate_.world_was_reset) {
+    world_was_reset_ = true;
+    goal_heading_rad_.reset();
+  }
   warning_ = transport_->warning();
   if (recorder_) recorder_->add(state, in_force_, estimate_.t_s);
 }
@@ -491,13 +498,17 @@ void Robot::step_calls() {
   std::erase_if(calls_, [&](Call* call) {
     if (call->stepped_frame == estimate_.frame) return false;
     call->stepped_frame = estimate_.frame;
-    std::optional<Verdict> verdict = call->step();
+    // A motion's goal is relative to where it began, where the robot is not any more.
+    std::optional<Verdict> verdict = world_was_reset_ && call->kind == Kind::motion
+                                         ? Verdict{HRT_E_STOPPED, std::string(kWorldWasReset)}
+                                         : call->step();
     if (!verdict || estimate_.frame == call->start_frame) return false;
     call->verdict = std::move(verdict);
     due_.push_back({call->owner});
     ended = true;
     return true;
   });
+  world_was_reset_ = false;
   if (ended) {
     last_call_t_s_ = estimate_.t_s;
     wake_calls();

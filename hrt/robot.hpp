@@ -166,6 +166,7 @@ class Robot {
   bool stopped_by_silence_ = false;  // silence has set them to 0, and no speed was requested since
   std::array<double, robot::kTrackCount> motion_track_mps_{};
   std::array<robot::JointCommand, robot::kFlipperCount> user_flipper_{};
+  bool world_was_reset_ = false;            // in a cycle that was taken and not yet stepped
   std::optional<double> goal_heading_rad_;  // of the previous motion, while nothing else has moved the robot
   double last_call_t_s_ = 0;
   std::vector<Call*> calls_;  // the waiting ones

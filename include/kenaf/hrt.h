@@ -114,7 +114,8 @@ enum {
                                  reason is in hrt_last_error() */
   HRT_E_TIMEOUT = -7,         /* the goal was not reached within its time limit (robot time) */
   HRT_E_STUCK = -8,           /* the sensors show no progress, or a track's current stayed above stuck_current_a */
-  HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
+  HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread, or a reset of the world by another
+                                 program, ended this motion */
   HRT_E_CLOSED = -10,         /* hrt_close of another thread ended this call */
   HRT_E_DEVICE = -11,         /* no such device or camera, no answer from it, or the request is not supported.
                                  libkenaf_real also: the robot is lost because of a drive, see Errors */
@@ -246,7 +247,8 @@ int hrt_close(void);
  * HRT_E_NOT_INITIALISED; HRT_E_BUSY: another thread's motion is under way; HRT_E_ARGUMENT; HRT_E_LINK; HRT_E_STUCK: the
  * sensors show no progress for stuck_time_s (travel is measured at the tracks, so tracks spinning in front of a wall
  * are not detected unless stuck_current_a is set); HRT_E_TIMEOUT: after three times the duration of the profile (five
- * times for a turn) plus 5 s; HRT_E_STOPPED; HRT_E_CLOSED; HRT_E_DEVICE: the robot has no track encoders. */
+ * times for a turn) plus 5 s; HRT_E_STOPPED, also where another program resets the simulated world; HRT_E_CLOSED;
+ * HRT_E_DEVICE: the robot has no track encoders. */
 
 /* Drives `mm` straight forward (negative: backward), -1000000 to 1000000, and holds the heading by the orientation
  * sensor or, without one, by the track encoders. */
@@ -344,7 +346,8 @@ typedef struct hrt_state {
 
   /* Dead reckoning by the library since init: the tracks' mean travel along the orientation sensor's heading and slope,
    * or along the encoders' heading if there is no such sensor. Start: 0, 0, 0; x is forward at the start, y left. Yaw
-   * is not wrapped: it counts full turns. Tracks slip, so this drifts. */
+   * is not wrapped: it counts full turns. Tracks slip, so this drifts. A reset of the world by another program adds
+   * nothing: from then on this tells how the robot was driven, not where it is. */
   double odometry_x_mm, odometry_y_mm, odometry_yaw_deg;
 
   /* Pose in the world of the body frame, whose origin is the body's geometric centre, from an external

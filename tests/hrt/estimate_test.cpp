@@ -148,6 +148,45 @@ TEST_CASE("Time goes on where the robot's clock is put back, and the same to the
   CHECK(now.t_s == Approx(1.0));
 }
 
+TEST_CASE("A world's reset is no motion, for the odometry nor for the heading") {
+  for (const bool has_posture : {true, false}) {
+    INFO(has_posture);
+    Estimator estimator({0.2, 1});
+    const auto cycle = [&](std::uint32_t number, double time_s, double left_m, double right_m, double yaw_rad) {
+      robot::State out = state_at(number, left_m, right_m);
+      out.robot_time_s = time_s;
+      if (has_posture) out.fields |= robot::kHasPosture;
+      out.posture_rad[2] = yaw_rad;
+      return out;
+    };
+    // 1 m ahead, then the right track alone by 0.2 m: a turn by 1 rad at a gauge of 0.2 m, and 0.1 m more of travel
+    (void)estimator.update(cycle(1, 0, 3, 3, 0.5));
+    (void)estimator.update(cycle(2, 10, 4, 4, 0.5));
+    Estimate now = estimator.update(cycle(3, 20, 4, 4.2, 1.5));
+    const double x_m = now.odometry_x_m, y_m = now.odometry_y_m;
+    CHECK_FALSE(now.world_was_reset);
+    CHECK(now.heading_rad - (has_posture ? 0.5 : 0) == Approx(1));
+    CHECK(std::hypot(x_m, y_m) == Approx(1.1).margin(0.02));
+
+    // The robot is back at its start: encoders at 0, as it looked at first.
+    const double heading_rad = now.heading_rad;
+    now = estimator.update(cycle(4, 0, 0, 0, 0.5));
+    CHECK(now.world_was_reset);
+    CHECK(now.odometry_x_m == x_m);
+    CHECK(now.odometry_y_m == y_m);
+    CHECK(now.odometry_yaw_rad == Approx(1));
+    CHECK(now.heading_rad == heading_rad);
+    CHECK(now.travel_m == 0);
+
+    // From there on it counts again: 0.5 m along the heading of the odometry, 1 rad.
+    now = estimator.update(cycle(5, 10, 0.5, 0.5, 0.5));
+    CHECK_FALSE(now.world_was_reset);
+    CHECK(now.odometry_x_m - x_m == Approx(0.5 * std::cos(1)));
+    CHECK(now.odometry_y_m - y_m == Approx(0.5 * std::sin(1)));
+    CHECK(now.heading_rad == Approx(heading_rad));
+  }
+}
+
 TEST_CASE("The tracks stand while they move less than the encoders resolve") {
   Estimator estimator({0.2, 1});
   (void)estimator.update(state_at(1, 0, 0));

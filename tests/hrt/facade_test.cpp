@@ -703,6 +703,27 @@ TEST_CASE("Track speeds stop as early where the world is reset meanwhile") {
   CHECK(frame <= 233);
 }
 
+TEST_CASE("A motion during which the world is reset ends and says so, and the next one drives as far as it should") {
+  const auto robot = use_fake_robot();
+  robot->reset_at_frame = 200;
+  const Open open;
+  // At 200 mm/s from 0.5 s on, where 50 mm are driven, up to 2 s: 350 mm, less 10 mm of the drives' lag of 0.05 s.
+  CHECK(hrt_go_forward(1000) == HRT_E_STOPPED);
+  CHECK(std::string(hrt_last_error()).find("reset the world") != std::string::npos);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  const double driven_mm = state.odometry_x_mm;
+  CHECK(driven_mm == Approx(340).margin(8));
+  CHECK(state.cycle == 200);
+  CHECK(state.track_mm[0] == 0);
+  CHECK(hrt_go_forward(100) == HRT_OK);
+  CHECK(hrt_turning(90) == HRT_OK);
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.odometry_x_mm - driven_mm == Approx(100).margin(1));
+  CHECK(state.odometry_yaw_deg == Approx(90).margin(1));
+  CHECK(robot->plant.x_m == Approx(0.1).margin(1e-3));
+}
+
 TEST_CASE("Where the world is reset, sleeping and a recording go on") {
   const kenaf::support::TemporaryFolder folder;
   const std::string file = (folder.path() / "run.csv").string();

@@ -74,6 +74,7 @@ std::optional<robot::State> FakeTransport::wait_state() {
     robot_->travel_m.push_back(robot_->plant.advance(command_).track_m[0]);
   } while (robot_->plant.state.frame == robot_->skipped_frame);
   answered_ = false;
+  if (robot_->reset_at_frame != 0 && robot_->plant.state.frame == robot_->reset_at_frame) robot_->plant.restart();
   if (robot_->reset_at_frame != 0 && robot_->plant.state.frame >= robot_->reset_at_frame) {
     robot_->plant.state.robot_time_s -= robot_->reset_at_frame * robot_->plant.settings.period_s;
   }

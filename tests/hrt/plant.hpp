@@ -70,6 +70,15 @@ class Plant {
     return state;
   }
 
+  // Its world is reset: it is at rest where it began, and its encoders begin at 0. Frames count on.
+  void restart() {
+    x_m = y_m = 0;
+    yaw_rad = settings.yaw_start_rad;
+    track_m = track_mps = {};
+    flipper_rad = {};
+    observe();
+  }
+
   PlantSettings settings;
   double x_m = 0, y_m = 0, yaw_rad = 0, t_s = 0;
   std::array<double, 2> track_m{}, track_mps{};
