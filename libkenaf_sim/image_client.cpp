@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "hrt/error.hpp"
-#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 namespace {
@@ -42,9 +41,10 @@ std::string printable(std::span<const std::uint8_t> words) {
 
 }  // namespace
 
-ImageClient::ImageClient(const hrt_config& config, const std::string& camera)
+ImageClient::ImageClient(const hrt_config& config, const std::string& camera, AskForAddresses ask)
     : server_(config.camera_server),
       camera_(camera),
+      ask_(std::move(ask)),
       patience_(config.connect_timeout_s),
       silence_(kPatienceWithSilence * patience_),
       interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
@@ -73,26 +73,34 @@ ImageClient::Ready ImageClient::wait_for(short events, Clock::time_point until) 
   }
 }
 
+std::optional<int> ImageClient::connect_to(const Address& address, Clock::time_point until) {
+  socket_ = socket(address.address.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket_ < 0) return errno;
+  if (connect(socket_, address.plain(), address.size) == 0) return 0;
+  if (errno != EINPROGRESS) return errno;
+  switch (wait_for(POLLOUT, until)) {
+    case Ready::interrupted:
+      return std::nullopt;
+    case Ready::time_is_up:
+      return ETIMEDOUT;
+    case Ready::yes:
+      break;
+  }
+  int wrong = 0;
+  socklen_t size = sizeof wrong;
+  getsockopt(socket_, SOL_SOCKET, SO_ERROR, &wrong, &size);
+  return wrong;
+}
+
 void ImageClient::open() {
-  const Addresses found = look_up("camera_server", server_, SOCK_STREAM);
-  const Clock::time_point until = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_);
+  const Clock::time_point deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_);
+  const std::optional<Addresses> found = look_up("camera_server", server_, SOCK_STREAM, deadline, interrupt_, ask_);
+  if (!found) return;
   std::string why;
-  for (const addrinfo* address = found.get(); address != nullptr; address = address->ai_next) {
-    socket_ = socket(address->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    int wrong = socket_ < 0 || (connect(socket_, address->ai_addr, address->ai_addrlen) < 0 && errno != EINPROGRESS)
-                    ? errno
-                    : 0;
-    if (wrong == 0) {
-      const Ready ready = wait_for(POLLOUT, until);
-      if (ready == Ready::interrupted) return;
-      socklen_t size = sizeof wrong;
-      if (ready == Ready::time_is_up) {
-        wrong = ETIMEDOUT;
-      } else {
-        getsockopt(socket_, SOL_SOCKET, SO_ERROR, &wrong, &size);
-      }
-    }
-    if (wrong == 0) {
+  for (std::size_t i = 0; i < found->size(); ++i) {
+    const std::optional<int> wrong = connect_to((*found)[i], end_of_share(Clock::now(), deadline, found->size() - i));
+    if (!wrong) return;
+    if (*wrong == 0) {
       const int on = 1;
       setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
       // An old server understands requests for pictures only, so nothing else is sent unless a certain camera is
@@ -100,7 +108,7 @@ void ImageClient::open() {
       if (!camera_.empty()) send_all(protocol::image::select_request(camera_));
       return;
     }
-    why = std::strerror(wrong);
+    why = std::strerror(*wrong);
     if (socket_ >= 0) ::close(std::exchange(socket_, -1));
   }
   throw hrt::Error(

@@ -16,13 +16,14 @@
 #include "formats/protocol/image_message.hpp"
 #include "hrt/camera.hpp"
 #include "kenaf/hrt.h"
+#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 
 class ImageClient final : public hrt::Camera {
  public:
   // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot placed last, or "": the server's choice, its robot's first camera.
-  ImageClient(const hrt_config& config, const std::string& camera);
+  ImageClient(const hrt_config& config, const std::string& camera, AskForAddresses ask = ask_system);
   ~ImageClient() override;
   ImageClient(const ImageClient&) = delete;
   ImageClient& operator=(const ImageClient&) = delete;
@@ -46,7 +47,11 @@ class ImageClient final : public hrt::Camera {
   [[noreturn]] void lose(const std::string& why) const;
   hrt::CameraPicture picture_of_answer();
 
+  // Returns 0, or the errno of the failed connection; nullopt: interrupted.
+  std::optional<int> connect_to(const Address& address, Clock::time_point until);
+
   std::string server_, camera_;
+  AskForAddresses ask_;
   std::chrono::duration<double> patience_,
       silence_;  // with a connection that is being made; with one that says nothing
   int socket_ = -1, interrupt_ = -1;

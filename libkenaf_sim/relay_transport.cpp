@@ -12,7 +12,6 @@
 #include <cstring>
 
 #include "hrt/error.hpp"
-#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 namespace {
@@ -37,6 +36,7 @@ constexpr auto kLongestLook = 100ms;
 // A world server that answers pings but counts no frame for this many link time-outs has stopped for good.
 constexpr double kFrozenLinkTimeouts = 20;
 constexpr int kByeCount = 3;
+constexpr const char* kClosedWhileOpening = "closed while the robot was being opened";
 
 template <typename Duration>
 auto seconds(double value) {
@@ -49,7 +49,8 @@ std::string words(const protocol::relay::Refused& refused) {
 
 }  // namespace
 
-RelayTransport::RelayTransport() : interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+RelayTransport::RelayTransport(AskForAddresses ask)
+    : ask_(std::move(ask)), interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (interrupt_ < 0) throw Error(HRT_E_INTERNAL, fmt::format("eventfd: {}", std::strerror(errno)));
 }
 
@@ -62,21 +63,23 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   relay_ = config.relay;
   link_timeout_s_ = config.link_timeout_s;
   connect_timeout_s_ = config.connect_timeout_s;
-  addresses_ = look_up("relay", relay_, SOCK_DGRAM);
-  address_count_ = 0;
-  for (const addrinfo* at = addresses_.get(); at != nullptr; at = at->ai_next) ++address_count_;
+  const Clock::time_point start = Clock::now();  // of connect_timeout_s, for everything until the first State
+  const Clock::time_point deadline = start + seconds<Clock::duration>(connect_timeout_s_);
+  std::optional<Addresses> found = look_up("relay", relay_, SOCK_DGRAM, deadline, interrupt_, ask_);
+  if (!found) throw Error(HRT_E_CLOSED, kClosedWhileOpening);
+  addresses_ = *std::move(found);
   connect_to(0);
   while (session_ == 0) {
     if (getrandom(&session_, sizeof session_, 0) < 0) {
       throw Error(HRT_E_INTERNAL, fmt::format("getrandom: {}", std::strerror(errno)));
     }
   }
-  const Clock::time_point start = Clock::now();
   const hrt::Connection connection = greet({.session = session_,
                                             .period_s = config.period_s,
                                             .command_timeout_s = config.command_timeout_s,
                                             .lockstep = config.lockstep != 0,
-                                            .reset_robot = config.reset_robot != 0});
+                                            .reset_robot = config.reset_robot != 0},
+                                           deadline);
   // Until the first State arrives, this stands in for its answer: the relay answers a Command with the newest State.
   command_ = {};
   command_.session = session_;
@@ -85,36 +88,34 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   resend_after_ = kFirstStateResend;
   resend_at_ = now + resend_after_;
   life_at_ = looked_at_ = ping_at_ = now;
-  state_at_ = start;  // connect_timeout_s covers everything until the first State
+  state_at_ = start;
   return connection;
 }
 
 void RelayTransport::connect_to(std::size_t number) {
-  const addrinfo* found = addresses_.get();
-  for (std::size_t i = 0; i < number; ++i) found = found->ai_next;
+  const Address& to = addresses_[number];
   if (socket_ >= 0) ::close(socket_);
   address_ = number;
   port_closed_ = false;
-  socket_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  socket_ = socket(to.address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   // without a way to this address another one may have one
-  if (socket_ >= 0 && connect(socket_, found->ai_addr, found->ai_addrlen) == 0) return;
-  if (address_count_ == 1)
+  if (socket_ >= 0 && connect(socket_, to.plain(), to.size) == 0) return;
+  if (addresses_.size() == 1)
     throw Error(HRT_E_LINK, fmt::format("no way to the relay at {}: {}", relay_, std::strerror(errno)));
   port_closed_ = true;
 }
 
 void RelayTransport::connect_to_next() {
-  connect_to((address_ + 1) % address_count_);
+  connect_to((address_ + 1) % addresses_.size());
 }
 
-hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
+hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello, Clock::time_point deadline) {
   const Clock::time_point start = Clock::now();
-  const Clock::time_point deadline = start + seconds<Clock::duration>(connect_timeout_s_);
   Clock::time_point hello_at = start;
   std::optional<protocol::relay::Refused> refused;
   // The relay listens on one of the addresses that its name has, such as 127.0.0.1 and ::1 of localhost. Each is asked
   // in turn: the next one at once if nobody listens, and after its share of the time if nobody answers.
-  const Clock::duration share = (deadline - start) / static_cast<std::int64_t>(address_count_);
+  const Clock::duration share = end_of_share(start, deadline, addresses_.size()) - start;
   Clock::time_point next_address_at = start + share;
   std::size_t asked = 1;  // since the last pause
   for (;;) {
@@ -145,15 +146,14 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
         }
       }
     }
-    if (!refused && port_closed_ && asked < address_count_) {
+    if (!refused && port_closed_ && asked < addresses_.size()) {
       connect_to_next();
       next_address_at = now + share;
       ++asked;
       transmit(hello);
       continue;
     }
-    if (!wait_readable(std::min(hello_at, deadline)))
-      throw Error(HRT_E_CLOSED, "closed while the robot was being opened");
+    if (!wait_readable(std::min(hello_at, deadline))) throw Error(HRT_E_CLOSED, kClosedWhileOpening);
   }
   if (!refused) {
     throw Error(HRT_E_LINK,

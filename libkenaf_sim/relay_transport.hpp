@@ -19,7 +19,7 @@ namespace kenaf::sim {
 
 class RelayTransport final : public hrt::Transport {
  public:
-  RelayTransport();
+  explicit RelayTransport(AskForAddresses ask = ask_system);
   ~RelayTransport() override;
   RelayTransport(const RelayTransport&) = delete;
   RelayTransport& operator=(const RelayTransport&) = delete;
@@ -39,7 +39,7 @@ class RelayTransport final : public hrt::Transport {
 
   void connect_to(std::size_t address);  // of those of the relay's name
   void connect_to_next();
-  hrt::Connection greet(const protocol::relay::Hello& hello);
+  hrt::Connection greet(const protocol::relay::Hello& hello, Clock::time_point deadline);
   // Returns the next well-formed datagram waiting in the socket.
   std::optional<protocol::relay::Datagram> receive();
   // Returns a state that begins a new cycle. Throws if the datagram ends the session.
@@ -52,8 +52,9 @@ class RelayTransport final : public hrt::Transport {
   bool wait_readable(Clock::time_point until);
 
   std::string relay_;
-  Addresses addresses_{nullptr, &freeaddrinfo};
-  std::size_t address_count_ = 0, address_ = 0;  // of addresses_; which one the socket is connected to
+  AskForAddresses ask_;
+  Addresses addresses_;
+  std::size_t address_ = 0;  // which of them the socket is connected to
   double link_timeout_s_ = 0, connect_timeout_s_ = 0;
   int socket_ = -1, interrupt_ = -1;
   bool not_at_start_ = false;  // as of the newest State

@@ -1,6 +1,10 @@
 // libkenaf_sim's camera client is tested below hrt_get_picture, against a server of pictures that the test speaks for
 // byte by byte. The tests check the requests, the number, robot time and age that a picture states, and servers that
 // know only USARSim's own protocol. Whatever a server does wrong ends in words, and the robot goes on.
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -14,6 +18,8 @@
 #include "libkenaf_sim/image_client.hpp"
 #include "tests/hrt/fake_image_server.hpp"
 #include "tests/hrt/fake_transport.hpp"
+#include "tests/hrt/name_servers.hpp"
+#include "tests/support/loopback.hpp"
 
 using namespace kenaf;
 using namespace kenaf::hrt::test;
@@ -24,9 +30,11 @@ namespace {
 
 // A robot that stands by, whose cameras are at `server`.
 struct OpenAt {
-  explicit OpenAt(const std::string& server, double connect_timeout_s = 3) : robot(use_fake_robot()) {
-    use_cameras([](const hrt_config& config, const std::string& camera) {
-      return std::make_unique<sim::ImageClient>(config, camera);
+  explicit OpenAt(const std::string& server, double connect_timeout_s = 3,
+                  const sim::AskForAddresses& ask = sim::ask_system)
+      : robot(use_fake_robot()) {
+    use_cameras([ask](const hrt_config& config, const std::string& camera) {
+      return std::make_unique<sim::ImageClient>(config, camera, ask);
     });
     hrt_config config = hrt_config_default();
     std::memset(config.camera_server, 0, sizeof config.camera_server);
@@ -43,6 +51,31 @@ unsigned char pixels[64 * 48 * 3];
 int get(hrt_picture& picture, const char* camera = nullptr, double timeout_s = 20) {
   return hrt_get_picture(camera, HRT_PICTURE_RGB, pixels, sizeof pixels, timeout_s, &picture);
 }
+
+// A port whose queue of connections is full: the system leaves further ones without any answer.
+class SilentListener {
+ public:
+  SilentListener() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address = kenaf::test::loopback(0);
+    socklen_t size = sizeof address;
+    REQUIRE(::bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) == 0);
+    REQUIRE(::listen(listener_, 0) == 0);
+    REQUIRE(::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) == 0);
+    port_ = ntohs(address.sin_port);
+    waiting_ = kenaf::test::connect_to_loopback(port_);  // a queue of 0 holds one
+  }
+  ~SilentListener() {
+    ::close(waiting_);
+    ::close(listener_);
+  }
+  SilentListener(const SilentListener&) = delete;
+  SilentListener& operator=(const SilentListener&) = delete;
+  std::uint16_t port() const { return port_; }
+
+ private:
+  int listener_, waiting_ = -1;
+  std::uint16_t port_ = 0;
+};
 
 // Fails as it must, in these words, and the robot still moves.
 void check_failure(const std::string& server, int code, const std::string& words, double connect_timeout_s = 3) {
@@ -251,6 +284,36 @@ TEST_CASE("A server that goes away is named, and asked anew by the next call") {
   serves = true;
   CHECK(get(picture) == HRT_OK);
   CHECK(server.connections() == 2);
+}
+
+TEST_CASE("A name server that does not answer holds up neither the program nor its end") {
+  const SilentNameServer names;
+  const OpenAt open("robot.example:5003", 60, names.ask());
+  hrt_picture picture = hrt_picture_init();
+  CHECK(get(picture, nullptr, 0.05) == HRT_E_TIMEOUT);
+  CHECK(hrt_go_forward(10) == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);  // which would never return if it waited for the answer
+}
+
+TEST_CASE("A name server that does not answer is named after connect_timeout_s") {
+  const SilentNameServer names;
+  const OpenAt open("robot.example:5003", 0.1, names.ask());
+  hrt_picture picture = hrt_picture_init();
+  CHECK(get(picture) == HRT_E_LINK);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("robot.example:5003") && Catch::Contains("name server"));
+}
+
+TEST_CASE("Pictures come from the second address of a name whose first one is silent") {
+  const SilentListener silent;
+  const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
+  FakeImageServer server([&](Client& connection) {
+    while (connection.request()) connection.answer(3, noted(red, {.number = 1, .robot = "k", .camera = "c"}));
+  });
+  const std::string address = server.address();
+  const auto port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
+  const OpenAt open("robot.example:5003", 1, name_of({{"127.0.0.1", silent.port()}, {"127.0.0.1", port}}));
+  hrt_picture picture = hrt_picture_init();
+  CHECK(get(picture) == HRT_OK);
 }
 
 TEST_CASE("A server that is not there, and an address that is none, are named") {

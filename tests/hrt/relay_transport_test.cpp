@@ -17,6 +17,7 @@
 #include "libkenaf_sim/relay_transport.hpp"
 #include "tests/hrt/fake_relay.hpp"
 #include "tests/hrt/fake_transport.hpp"
+#include "tests/hrt/name_servers.hpp"
 
 using namespace kenaf;
 using namespace kenaf::hrt::test;
@@ -155,6 +156,30 @@ TEST_CASE("No relay: the error says what to start, after connect_timeout_s") {
 TEST_CASE("A host that has also an IPv6 address is reached where the relay listens") {
   FakeRelay relay({});
   const hrt_config config = config_for("localhost:" + std::to_string(relay.port()));
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("A name server that does not answer holds init up no longer than connect_timeout_s") {
+  const SilentNameServer names;
+  hrt_config config = config_for("robot.example:45454");
+  use_transport([&] { return std::make_unique<sim::RelayTransport>(names.ask()); });
+  config.connect_timeout_s = 0.1;
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_LINK);  // which it would never return if it waited for the answer
+  CHECK_THAT(hrt_last_error(), Catch::Contains("robot.example:45454") && Catch::Contains("name server"));
+}
+
+TEST_CASE("A relay is reached by the second address of its name, too") {
+  FakeRelay relay({});
+  std::uint16_t nobodys = 0;
+  {
+    const FakeRelay gone({});
+    nobodys = gone.port();
+  }
+  hrt_config config = config_for("robot.example:45454");
+  use_transport([&] {
+    return std::make_unique<sim::RelayTransport>(name_of({{"127.0.0.1", nobodys}, {"127.0.0.1", relay.port()}}));
+  });
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
   CHECK(hrt_close() == HRT_OK);
 }
