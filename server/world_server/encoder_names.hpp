@@ -4,10 +4,9 @@
 #include <array>
 #include <string_view>
 
-#include "robot/parts.hpp"
-
 namespace kenaf::world_server {
 
-inline constexpr std::array<std::string_view, robot::kTrackCount> kEncoderNames = {"ECLeft", "ECRight"};
+// In the order of robot::Track.
+inline constexpr std::array<std::string_view, 2> kEncoderNames = {"ECLeft", "ECRight"};
 
 }  // namespace kenaf::world_server
