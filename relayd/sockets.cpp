@@ -34,59 +34,6 @@ std::uint32_t zone_index(const std::string& zone) {
   return error == std::errc{} && end == zone.data() + zone.size() ? index : ::if_nametoindex(zone.c_str());
 }
 
-// Room for the one note of a datagram that is asked for, the address of this machine, of either family.
-struct Notes {
-  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(in6_pktinfo))> bytes{};
-};
-static_assert(sizeof(in6_pktinfo) >= sizeof(in_pktinfo));
-
-// The address of this machine that a datagram was sent to; empty: there is no note of it, or it is that of many.
-Address reached_address(msghdr& message) {
-  for (const cmsghdr* note = CMSG_FIRSTHDR(&message); note != nullptr;
-       note = CMSG_NXTHDR(&message, const_cast<cmsghdr*>(note))) {
-    Address out;
-    if (note->cmsg_level == IPPROTO_IP && note->cmsg_type == IP_PKTINFO) {
-      in_pktinfo info{};
-      std::memcpy(&info, CMSG_DATA(note), sizeof info);
-      std::ranges::copy(kIpv4Prefix, out.ip.begin());
-      std::memcpy(out.ip.data() + kIpv4Prefix.size(), &info.ipi_spec_dst, sizeof info.ipi_spec_dst);
-      return out;
-    }
-    if (note->cmsg_level == IPPROTO_IPV6 && note->cmsg_type == IPV6_PKTINFO) {
-      in6_pktinfo info{};
-      std::memcpy(&info, CMSG_DATA(note), sizeof info);
-      if (IN6_IS_ADDR_MULTICAST(&info.ipi6_addr)) return {};
-      std::memcpy(out.ip.data(), &info.ipi6_addr, sizeof info.ipi6_addr);
-      if (IN6_IS_ADDR_LINKLOCAL(&info.ipi6_addr)) out.zone = info.ipi6_ifindex;
-      return out;
-    }
-  }
-  return {};
-}
-
-// Writes the note that a datagram is to be sent from `reached`.
-void note_source(msghdr& message, Notes& notes, int family, const Address& reached) {
-  const auto put = [&](int level, int type, const auto& info) {
-    message.msg_control = notes.bytes.data();
-    message.msg_controllen = CMSG_SPACE(sizeof info);
-    cmsghdr* note = CMSG_FIRSTHDR(&message);
-    note->cmsg_level = level;
-    note->cmsg_type = type;
-    note->cmsg_len = CMSG_LEN(sizeof info);
-    std::memcpy(CMSG_DATA(note), &info, sizeof info);
-  };
-  if (family == AF_INET) {
-    in_pktinfo info{};
-    std::memcpy(&info.ipi_spec_dst, reached.ip.data() + kIpv4Prefix.size(), sizeof info.ipi_spec_dst);
-    put(IPPROTO_IP, IP_PKTINFO, info);
-  } else {
-    in6_pktinfo info{};
-    std::memcpy(&info.ipi6_addr, reached.ip.data(), sizeof info.ipi6_addr);
-    info.ipi6_ifindex = reached.zone;
-    put(IPPROTO_IPV6, IPV6_PKTINFO, info);
-  }
-}
-
 // Returns 0, or the errno of the failed connection.
 int finish_connect(int fd, Clock::time_point until, int cancel_fd) {
   std::array<pollfd, 2> watched{{{fd, POLLOUT, 0}, {cancel_fd, POLLIN, 0}}};
@@ -205,9 +152,7 @@ Descriptor open_udp(const Address& address, Address& bound) {
                                          to_text(address), std::strerror(errno)));
   }
   ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
-  const int on = 1;
-  ::setsockopt(fd.get(), family == AF_INET ? IPPROTO_IP : IPPROTO_IPV6,
-               family == AF_INET ? IP_PKTINFO : IPV6_RECVPKTINFO, &on, sizeof on);
+  protocol::tell_reached_addresses(fd.get(), family);
   sockaddr_storage got{};
   socklen_t size = sizeof got;
   ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&got), &size);
@@ -217,34 +162,15 @@ Descriptor open_udp(const Address& address, Address& bound) {
 
 std::optional<std::size_t> receive_from(int fd, std::span<std::byte> bytes, Peer& from) {
   sockaddr_storage address{};
-  Notes notes;
-  iovec room{bytes.data(), bytes.size()};
-  msghdr message{};
-  message.msg_name = &address;
-  message.msg_namelen = sizeof address;
-  message.msg_iov = &room;
-  message.msg_iovlen = 1;
-  message.msg_control = notes.bytes.data();
-  message.msg_controllen = notes.bytes.size();
-  const ssize_t got = ::recvmsg(fd, &message, MSG_DONTWAIT);
-  if (got < 0) return std::nullopt;
-  from = {address_of(address), reached_address(message)};
-  return static_cast<std::size_t>(got);
+  socklen_t size = 0;
+  const auto got = protocol::receive_datagram(fd, bytes, address, size, from.reached);
+  if (got) from.address = address_of(address);
+  return got;
 }
 
 void send_to(int fd, int family, std::span<const std::byte> bytes, const Peer& to) {
-  Endpoint endpoint = endpoint_of(to.address, family);
-  Notes notes;
-  iovec content{const_cast<std::byte*>(bytes.data()), bytes.size()};
-  msghdr message{};
-  message.msg_name = &endpoint.address;
-  message.msg_namelen = endpoint.size;
-  message.msg_iov = &content;
-  message.msg_iovlen = 1;
-  if (to.reached != Address{}) note_source(message, notes, family, to.reached);
-  if (::sendmsg(fd, &message, MSG_DONTWAIT) >= 0 || errno != EINVAL || message.msg_controllen == 0) return;
-  message.msg_controllen = 0;  // nothing is sent from there, such as an address of all, or one that is gone
-  ::sendmsg(fd, &message, MSG_DONTWAIT);
+  const Endpoint endpoint = endpoint_of(to.address, family);
+  protocol::send_datagram(fd, bytes, reinterpret_cast<const sockaddr*>(&endpoint.address), endpoint.size, to.reached);
 }
 
 int poll_timeout(Clock::time_point until) {

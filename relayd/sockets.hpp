@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "formats/protocol/host_port.hpp"
+#include "formats/protocol/reached_address.hpp"
 
 namespace kenaf::relayd {
 
@@ -56,11 +57,10 @@ Address parse_address(std::string_view text);
 // families.
 Descriptor open_udp(const Address& address, Address& bound);
 
-// Who sent a datagram, and which address of this machine it was sent to. An answer has to come from there: a peer whose
-// socket is connected takes it from no other, and a socket on 0.0.0.0 or [::] would answer from any that leads there.
+// Who sent a datagram, and to which address of this machine, from which an answer has to come.
 struct Peer {
   Address address;
-  Address reached{};  // without port; empty: the system chooses
+  protocol::ReachedAddress reached{};
 };
 
 // Of a socket from open_udp(), without waiting. Returns the size of the next datagram; nullopt: there is none.

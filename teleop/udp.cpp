@@ -81,6 +81,7 @@ UdpSocket UdpSocket::bound_to(const Peer& local) {
   if (::bind(socket.descriptor_, plain(local), local.size) != 0) {
     throw std::runtime_error(fmt::format("cannot listen on {}: {}", to_text(local), std::strerror(errno)));
   }
+  protocol::tell_reached_addresses(socket.descriptor_, local.address.ss_family);
   return socket;
 }
 
@@ -128,24 +129,21 @@ std::uint16_t UdpSocket::port() const {
 }
 
 std::optional<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Peer& from) {
-  from.size = sizeof from.address;
-  ssize_t got = -1;
+  std::optional<std::size_t> got;
   do {
     // an error here is a delayed report about an earlier datagram that nobody received (ECONNREFUSED), not a datagram
-    got = ::recvfrom(descriptor_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from.address),
-                     &from.size);
-    if (got < 0 && errno == ECONNREFUSED && !remotes_.empty()) {
+    got = protocol::receive_datagram(descriptor_, buffer, from.address, from.size, from.reached);
+    if (!got && errno == ECONNREFUSED && !remotes_.empty()) {
       connect_to_next();
       return std::nullopt;
     }
-  } while (got < 0 && (errno == ECONNREFUSED || errno == EINTR));
-  if (got < 0) return std::nullopt;
-  remotes_.clear();
-  return static_cast<std::size_t>(got);
+  } while (!got && (errno == ECONNREFUSED || errno == EINTR));
+  if (got) remotes_.clear();
+  return got;
 }
 
 void UdpSocket::send(std::span<const std::byte> datagram, const Peer& to) const {
-  (void)::sendto(descriptor_, datagram.data(), datagram.size(), MSG_NOSIGNAL, plain(to), to.size);
+  protocol::send_datagram(descriptor_, datagram, plain(to), to.size, to.reached);
 }
 
 void UdpSocket::send(std::span<const std::byte> datagram) {

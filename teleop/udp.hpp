@@ -11,12 +11,15 @@
 #include <string>
 #include <vector>
 
+#include "formats/protocol/reached_address.hpp"
+
 namespace kenaf::teleop {
 
 // Source or destination of a datagram.
 struct Peer {
   sockaddr_storage address{};
   socklen_t size = 0;
+  protocol::ReachedAddress reached{};  // of a source: this machine's address, from which an answer comes
 };
 std::string to_text(const Peer& peer);  // "10.0.0.5:45460"
 

@@ -48,6 +48,18 @@ TEST_CASE("An address of IPv6 is the same with brackets and without") {
   CHECK(is_answered(client, server));
 }
 
+// All of 127.0.0.0/8 are this machine's. The system would answer from 127.0.0.1, which a connected socket does not
+// take.
+TEST_CASE("A server on every address answers from the one that its client asked") {
+  for (const std::string listen : {"0.0.0.0:0", "[::]:0"}) {
+    if (listen.starts_with("[") && !kenaf::test::has_ipv6_loopback()) continue;
+    INFO(listen);
+    UdpSocket server = UdpSocket::bound_to(resolve_listener(listen));
+    UdpSocket client = UdpSocket::connected_to(resolve("127.0.0.2:" + std::to_string(server.port())));
+    CHECK(is_answered(client, server));
+  }
+}
+
 TEST_CASE("Of the addresses of a name the one where somebody listens is found") {
   UdpSocket server = UdpSocket::bound_to(resolve_listener("localhost:0"));
   const Peer there = resolve_listener("127.0.0.1:" + std::to_string(server.port()));
