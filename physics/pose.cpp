@@ -20,6 +20,14 @@ Eigen::Quaterniond rotation_from(const Eigen::Vector3d& rpy) {
          AngleAxisd(rpy.x(), Vector3d::UnitX());
 }
 
+Eigen::Quaterniond leveling(const Eigen::Vector3d& gravity_W_mps2) {
+  if (!(gravity_W_mps2.norm() > 0)) return Eigen::Quaterniond::Identity();
+  // up_W is the last row of R_LW = R_y(pitch) R_x(roll), (-sin p, cos p sin r, cos p cos r): solve for r and p.
+  const Eigen::Vector3d up_W = -gravity_W_mps2.normalized();
+  if (up_W.x() == 0 && up_W.y() == 0 && up_W.z() > 0) return Eigen::Quaterniond::Identity();
+  return rotation_from({std::atan2(up_W.y(), up_W.z()), std::asin(std::clamp(-up_W.x(), -1.0, 1.0)), 0});
+}
+
 Pose compose(const Pose& X_AB, const Pose& X_BC) {
   return {X_AB.p + X_AB.q * X_BC.p, X_AB.q * X_BC.q};
 }

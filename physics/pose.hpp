@@ -18,6 +18,9 @@ struct Pose {
 // Intrinsic z-y-x angles (roll, pitch, yaw); pitch positive nose down; each in (-pi, pi].
 Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& q_WB);
 Eigen::Quaterniond rotation_from(const Eigen::Vector3d& roll_pitch_yaw);
+// q_LW into axes L in which gravity points along -z, without a turn about z. The identity where it does so in W, or is
+// 0.
+Eigen::Quaterniond leveling(const Eigen::Vector3d& gravity_W_mps2);
 
 // X_AC = compose(X_AB, X_BC)
 Pose compose(const Pose& X_AB, const Pose& X_BC);

@@ -8,6 +8,7 @@ namespace kenaf::physics {
 namespace {
 
 constexpr double kThinnest_m = 0.001;
+constexpr double kNoArea = 1e-9;  // of the squares of a triangle's edges: seen edge-on
 
 // Whether the vertical line through `p_W` meets the box: clips the line against the box's three slabs.
 bool is_above_or_below(const Box& box, const Eigen::Vector3d& p_W) {
@@ -36,6 +37,9 @@ bool is_above_or_below(const TriangleMesh& mesh, const Eigen::Vector3d& p_W) {
     const Eigen::Vector3d &a = mesh.vertices_W[triangle[0]], &b = mesh.vertices_W[triangle[1]],
                           &c = mesh.vertices_W[triangle[2]];
     const double ab = side(a, b), bc = side(b, c), ca = side(c, a);
+    // a vertical face covers nothing, although what is in line with it is on no side of its edges
+    const double area = ab + bc + ca, edges = (b - a).squaredNorm() + (c - b).squaredNorm();
+    if (std::abs(area) <= kNoArea * edges) return false;
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
   });
 }

@@ -61,10 +61,16 @@ std::optional<robot::Command> Driver::command(double t_s, const physics::Pose& X
   return command_;
 }
 
+void Driver::obey(const robot::Command& command) {
+  command_.track_speed_mps = command.track_speed_mps;
+  for (std::size_t i = 0; i < command.flipper.size(); ++i)
+    if (command.flipper[i].mode != robot::JointMode::keep) command_.flipper[i] = command.flipper[i];
+}
+
 std::optional<robot::Command> Driver::timed_command(double t_s) {
   const std::vector<TimedCommand>& timed = manoeuvre_.timed;
   while (next_timed_ < timed.size() && timed[next_timed_].t_s <= t_s + runs::kSameTime_s)
-    command_ = timed[next_timed_++].command;
+    obey(timed[next_timed_++].command);
   if (next_timed_ == timed.size()) return std::nullopt;
   return command_;
 }

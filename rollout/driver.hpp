@@ -31,6 +31,7 @@ class Driver {
  private:
   bool ended(const Phase& phase, double t_s, const physics::Pose& X_WB) const;
   std::size_t next_phase(const physics::Pose& X_WB);
+  void obey(const robot::Command& command);
   std::optional<robot::Command> timed_command(double t_s);
 
   const Manoeuvre& manoeuvre_;

@@ -60,9 +60,9 @@ struct TimedCommand {
 // A start other than the world's: that of a recorded run, once the robot has settled.
 struct Start {
   double x_m, y_m, yaw_rad;
-  std::optional<double> z_m;                                            // empty: on the ground
-  std::optional<std::array<double, robot::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
-  std::optional<StartMotion> motion{};                                  // empty: it is at rest
+  std::optional<double> z_m;                                              // empty: on the ground
+  std::array<std::optional<double>, robot::kFlipperCount> flipper_rad{};  // empty: as the robot's description says
+  std::optional<StartMotion> motion{};                                    // empty: it is at rest
 };
 
 struct Manoeuvre {

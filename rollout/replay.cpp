@@ -36,14 +36,12 @@ double at_start(const runs::Run& run, std::string_view name, const std::string& 
                   file, name));
 }
 
-// The first angles of all flippers, measured or else commanded; empty if one has neither.
-std::optional<std::array<double, robot::kFlipperCount>> flippers_at_start(const runs::Run& run) {
-  std::array<double, robot::kFlipperCount> angles{};
+// The first angle of each flipper, measured or else commanded; empty if it has neither.
+std::array<std::optional<double>, robot::kFlipperCount> flippers_at_start(const runs::Run& run) {
+  std::array<std::optional<double>, robot::kFlipperCount> angles;
   for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i) {
-    auto angle = first_measured(run.column(fmt::format("flipper_{}_rad", robot::kFlipperNames[i])));
-    if (!angle) angle = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i])));
-    if (!angle) return std::nullopt;
-    angles[i] = *angle;
+    angles[i] = first_measured(run.column(fmt::format("flipper_{}_rad", robot::kFlipperNames[i])));
+    if (!angles[i]) angles[i] = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i])));
   }
   return angles;
 }
@@ -73,7 +71,8 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
   robot::Command command;  // at rest until the first one
   for (std::size_t i = 0; i < flippers.size(); ++i) {
     flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]));
-    command.flipper[i] = {robot::JointMode::angle, replay.start->flipper_rad ? (*replay.start->flipper_rad)[i] : 0};
+    if (const std::optional<double> angle = replay.start->flipper_rad[i])
+      command.flipper[i] = {robot::JointMode::angle, *angle};  // others stay where the robot's description has them
   }
   for (std::size_t row = 0; row < time.size(); ++row) {
     const auto take = [row](Column column, double& value) {

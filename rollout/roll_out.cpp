@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -22,8 +23,9 @@ using physics::World;
 using FlipperAngles = std::array<double, robot::kFlipperCount>;
 
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after this time
-constexpr double kFold_s = 5;      // flippers reach any angle from any other in this time
+constexpr double kFold_s = 5;      // flippers with a fast servo reach any angle from any other in this time
 constexpr double kStill_radps = 0.005;
+constexpr double kLagsUntilStill = 10;  // time constants of a lag after which nothing of it is left
 constexpr double kMisplaced_m = 1e-5, kMisplaced_rad = 1e-5;
 constexpr double kInTheAir_m = 0.01;  // a recorded start higher than this above the settled robot is a drop
 
@@ -39,8 +41,11 @@ FlipperAngles flippers_at_start(const Manoeuvre& manoeuvre, const RobotDescripti
   FlipperAngles angles{};
   if (!robot.has_flippers()) return angles;
   angles.fill(robot.flipper.front().start_angle_rad);
-  if (manoeuvre.start) return manoeuvre.start->flipper_rad.value_or(angles);
-  return manoeuvre.phases.empty() ? angles : manoeuvre.phases.front().flipper_rad.value_or(angles);
+  if (!manoeuvre.start)
+    return manoeuvre.phases.empty() ? angles : manoeuvre.phases.front().flipper_rad.value_or(angles);
+  for (std::size_t i = 0; i < angles.size(); ++i)
+    if (robot.has(static_cast<robot::Flipper>(i))) angles[i] = manoeuvre.start->flipper_rad[i].value_or(angles[i]);
+  return angles;
 }
 
 Pose start_pose(const physics::WorldDescription& world, const Manoeuvre& manoeuvre, const RollOutOptions& options) {
@@ -94,6 +99,23 @@ bool apart(const Pose& X_WB, const Pose& other) {
   return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
+// In which its flippers reach any angle from any other.
+double longest_fold_s(const RobotDescription& robot) {
+  return kFold_s + robot.effects.command_delay_s + 2 * std::numbers::pi / robot.servo.max_speed_radps +
+         kLagsUntilStill * robot.effects.flipper_lag_s;
+}
+
+// The angle of all flippers that the robot has; empty if they differ, or if it has none.
+std::optional<double> common_angle(const RobotDescription& robot, const FlipperAngles& flippers) {
+  std::optional<double> common;
+  for (std::size_t i = 0; i < flippers.size(); ++i) {
+    if (!robot.has(static_cast<robot::Flipper>(i))) continue;
+    if (common && *common != flippers[i]) return std::nullopt;
+    common = flippers[i];
+  }
+  return common;
+}
+
 // The robots that report one drive; all move as the first does.
 using Robots = std::span<const RobotDescription>;
 
@@ -102,10 +124,10 @@ Pose put_down(Scene& scene, Robots robots, const Manoeuvre& manoeuvre, const Fli
               const Pose& X_WB) {
   RobotDescription robot = robots.front();
   // Flippers that are all alike can start at their angle.
-  const bool alike = std::ranges::count(flippers, flippers.front()) == std::ssize(flippers);
-  if (robot.has_flippers() && alike)
+  const std::optional<double> common_rad = common_angle(robot, flippers);
+  if (common_rad)
     robot.flipper.front().start_angle_rad =
-        std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
+        std::clamp(*common_rad, robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
 
   // Placed with belts held still and measured flippers held at their first angles.
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
@@ -119,9 +141,11 @@ Pose put_down(Scene& scene, Robots robots, const Manoeuvre& manoeuvre, const Fli
   // Flippers at different angles have to be driven there first; then the robot is put down again.
   robot::Command rest;
   for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {robot::JointMode::angle, flippers[i]};
-  if (robot.has_flippers() && !alike) {
+  if (robot.has_flippers() && !common_rad) {
+    const double by_s = longest_fold_s(robot);
+    scene.hold(rest, robot.effects.command_delay_s);  // nothing moves before
     do scene.hold(rest, kSettle_s);
-    while (scene.flippers_move() && scene.world.time_s() < kFold_s);
+    while (scene.flippers_move() && scene.world.time_s() < by_s);
     scene.world.teleport(scene.robot, X_WB);
   }
   scene.hold(rest, kSettle_s);

@@ -231,13 +231,37 @@ bool does_the_same(std::string_view effect, const RobotDescription& robot) {
   return effect.starts_with("track.") || physics::find_effect(effect) != nullptr;
 }
 
+// Flippers whose belts do not run are skids, with the friction across in all directions.
+bool has_no_influence(const std::string& key, const RobotDescription& robot) {
+  return key == "flipper.friction_along" && robot.has_flippers() && !robot.flipper.front().belt_driven;
+}
+
+// `end`, or what is possible on the way there from the present value: pairs of wheels may differ, so that a common
+// number reaches the limit of one of them before that of the others.
+double possible_end(const RobotDescription& robot, const RobotNumber& number, double present, double end) {
+  const auto is_possible = [&](double value) {
+    RobotDescription varied = robot;
+    number.set(varied, value);
+    return why_impossible(varied).empty();
+  };
+  if (is_possible(end)) return end;
+  constexpr int kHalvings = 30;
+  double possible = present, impossible = end;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (possible + impossible) / 2;
+    (is_possible(middle) ? possible : impossible) = middle;
+  }
+  return possible;
+}
+
 // Adds nothing if the range is empty: half and twice of 0 are 0.
 void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& described, const std::string& key,
                    const RobotDescription& robot) {
   const std::optional<RobotNumber> number = find_robot_number(robot, key);
-  if (!number) return;
+  if (!number || has_no_influence(key, robot)) return;
   const double value = number->get(robot);
-  const SearchRange range = with(within(described.range(robot, value), {number->range.min, number->range.max}), value);
+  SearchRange range = with(within(described.range(robot, value), {number->range.min, number->range.max}), value);
+  range = {possible_end(robot, *number, value, range.min), possible_end(robot, *number, value, range.max)};
   if (!(range.min < range.max)) return;
   Candidate candidate;
   candidate.name = candidate.effect = key;

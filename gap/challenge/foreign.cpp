@@ -60,10 +60,8 @@ void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double a
                 [](robot::Command& command) -> double& { return command.track_speed_mps[robot::kLeft]; });
   if (foreign == "right_flipper_lag" && !replay.timed.empty()) {
     const auto angle_of = [](robot::Command& command) -> double& { return command.flipper[robot::kFrontRight].value; };
-    const bool known = replay.start && replay.start->flipper_rad;
-    follow_late(replay, 0.5 * amount,
-                known ? (*replay.start->flipper_rad)[robot::kFrontRight] : angle_of(replay.timed.front().command),
-                angle_of);
+    const std::optional<double> known = replay.start ? replay.start->flipper_rad[robot::kFrontRight] : std::nullopt;
+    follow_late(replay, 0.5 * amount, known.value_or(angle_of(replay.timed.front().command)), angle_of);
   }
   if (foreign == "right_drive_cuts_out") cut_out(replay, amount);
   if (foreign == "command_shortfall")

@@ -8,7 +8,9 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr btScalar kDeepest_m = 0.03;  // deeper inside, a face is not the one that is touched
+// Deeper inside, a face is not the one that is touched: for small and large discs, in m and in radii. The wheels of a
+// heavy robot sink deeper into soft ground, and have more room for it.
+constexpr btScalar kDeepest_m = 0.03, kDeepestInRadii = 0.3;
 // A normal whose part in the slice's plane is shorter belongs to a wall beside the slice. Above the kSideFace of
 // contact.cpp, below which a normal gives no direction along the belt: a point found in a slice always has one.
 constexpr btScalar kSideways = 0.15;
@@ -16,6 +18,10 @@ constexpr btScalar kFacing = 0.9;  // least cosine between a face's normal and t
 // An edge or corner is touched along a combination of its faces' unit normals with coefficients of at least minus this.
 constexpr btScalar kConeSlack = 0.05;
 constexpr int kMeshSlices = 5, kBoxSlices = 3;
+
+btScalar deepest_m(const BeltShape& belt) {
+  return std::max(kDeepest_m, kDeepestInRadii * std::min(belt.radius[0], belt.radius[1]));
+}
 
 // A feature's number: slice and place in the low bits, the part of the ground in the high ones.
 constexpr std::uint64_t feature(std::uint64_t ground, std::uint32_t slice, std::uint32_t place) {
@@ -112,7 +118,7 @@ bool in_slabs(const BoxInT& box, const btVector3& from_center, int except) {
 class BoxTouches {
  public:
   BoxTouches(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>& out)
-      : belt_(belt), box_(box), out_(out), first_(out.size()) {}
+      : belt_(belt), box_(box), out_(out), first_(out.size()), deepest_m_(deepest_m(belt)) {}
 
   void find() {
     // Most boxes are far away: compare the box's half extents along T's axes, |R| half, with the belt's.
@@ -148,7 +154,7 @@ class BoxTouches {
     corners();
 
     // Where the shortest way out is sideways, the box is a wall beside the belt.
-    if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) touch_side_face();
+    if (overlap_ < deepest_m_ && overlap_ < depth_in_plane()) touch_side_face();
   }
 
  private:
@@ -205,7 +211,7 @@ class BoxTouches {
                    int run_place, btVector3 p, btScalar weight) {
     const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
     const auto gap_here = [&] { return normal.dot(p - box_.center) - box_.half[j]; };
-    const auto counts = [](btScalar gap) { return gap <= kTouching_m && gap >= -kDeepest_m; };
+    const auto counts = [this](btScalar gap) { return gap <= kTouching_m && gap >= -deepest_m_; };
     const auto over = [&](std::size_t k) {
       move_to(k);
       return in_slabs(box_, p - box_.center, j);
@@ -232,7 +238,7 @@ class BoxTouches {
   // normals of the edge's two faces.
   void edge_point(const BoxEdge& edge, const btVector3& p, btScalar weight, std::uint64_t id) {
     const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
-    if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
+    if (at.distance > kTouching_m || at.distance < -deepest_m_) return;
     const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
     const btVector3 normal = -at.outward;
     if (!within_cone(normal, box_.axes.getColumn(j1) * edge.sign(j1), box_.axes.getColumn(j2) * edge.sign(j2))) return;
@@ -267,7 +273,7 @@ class BoxTouches {
       const btVector3& p = corner_[k];
       if (btFabs(p.y()) > belt_.half_width) continue;
       const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
-      if (at.distance > kTouching_m || at.distance < -kDeepest_m) continue;
+      if (at.distance > kTouching_m || at.distance < -deepest_m_) continue;
       const btVector3 normal = -at.outward;
       bool outside = false;
       for (int j = 0; j < 3; ++j)
@@ -352,6 +358,7 @@ class BoxTouches {
   const BoxInT& box_;
   std::vector<BeltTouch>& out_;
   std::size_t first_;
+  btScalar deepest_m_;
   std::array<btVector3, 8> corner_;
   btScalar overlap_ = 0, box_side_ = 1;
 };
@@ -386,6 +393,7 @@ void touch_box(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>&
 }
 
 void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<BeltTouch>& out) {
+  const btScalar deepest = deepest_m(belt);
   const btScalar in_plane = btSqrt(t.normal.x() * t.normal.x() + t.normal.z() * t.normal.z());
   const btVector3 edge[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
 
@@ -398,7 +406,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
   };
   const auto face = [&](const btVector3& p, btScalar weight, std::uint64_t id, int run_place) {
     const btScalar gap = t.normal.dot(p - t.corner[0]);
-    if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
+    if (gap <= kTouching_m && gap >= -deepest && inside(p))
       out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, run_place, id});
   };
 
@@ -412,12 +420,9 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
     return;
   }
 
-  // In each slice: the face against the outline's points, ...
+  // In a slice: the face against the outline's points, ...
   const btVector3 flat(t.normal.x() / in_plane, 0, t.normal.z() / in_plane);
-  const Slices s = slices(belt, kMeshSlices);
-  for (int k = 0; k < s.count; ++k) {
-    const btScalar y = s.y[static_cast<std::size_t>(k)], slice_weight = s.weight[static_cast<std::size_t>(k)];
-    const auto slice = static_cast<std::uint32_t>(k);
+  const auto in_slice = [&](btScalar y, btScalar slice_weight, std::uint32_t slice) {
     outline_points(belt, flat, [&](std::uint32_t place, int run_place, btVector3 p, btScalar weight) {
       p.setY(y);
       face(p, weight * slice_weight, feature(t.index, slice, place), run_place);
@@ -431,13 +436,24 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
       if (along < 0 || along > 1) continue;
       const btVector3 p = t.corner[i] + edge[i] * along;
       const OutlineDistance at = distance_to_outline(belt, p.x(), p.z());
-      if (at.distance > kTouching_m || at.distance < -kDeepest_m ||
+      if (at.distance > kTouching_m || at.distance < -deepest ||
           !within_cone(-at.outward, t.normal, t.neighbour_normal[i]))
         continue;
       out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_weight, lies_across(edge[i]),
                      -1, feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
     }
-  }
+  };
+  const Slices s = slices(belt, kMeshSlices);
+  for (int k = 0; k < s.count; ++k)
+    in_slice(s.y[static_cast<std::size_t>(k)], s.weight[static_cast<std::size_t>(k)], static_cast<std::uint32_t>(k));
+
+  // A ridge that lies between two slices has a slice of its own, through each triangle's middle.
+  if (!t.at_ridge) return;
+  const auto [low, high] = std::minmax({t.corner[0].y(), t.corner[1].y(), t.corner[2].y()});
+  for (int k = 0; k < s.count; ++k)
+    if (low <= s.y[static_cast<std::size_t>(k)] && s.y[static_cast<std::size_t>(k)] <= high) return;
+  const btScalar middle = (low + high) / 2;
+  if (btFabs(middle) < belt.half_width) in_slice(middle, s.weight[1], kMeshSlices + 1);
 }
 
 }  // namespace kenaf::physics

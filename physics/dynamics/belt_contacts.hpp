@@ -46,6 +46,7 @@ struct TriangleInT {
   bool owns_edge[3];
   btVector3 neighbour_normal[3];
   std::uint32_t index;
+  bool at_ridge = false;  // a convex edge of it is sharp: it may be of a pole or a pipe that lies between two slices
 };
 void touch_triangle(const BeltShape& belt, const TriangleInT& triangle, std::vector<BeltTouch>& out);
 

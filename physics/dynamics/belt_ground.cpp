@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kReserved = 128;  // contacts; a track on a step has about 20, on triangles of 5 mm above 48
 constexpr btScalar kFlat = 1e-4;        // sine of the angle between two triangles that are one surface
+// Cosine of 20 degrees (chosen): the facets of a round shape narrower than a belt meet at more.
+constexpr btScalar kSharp = 0.94;
 
 const ShapeTag* tag_of(const btCollisionObjectWrapper& object) {
   return static_cast<const ShapeTag*>(object.getCollisionShape()->getUserPointer());
@@ -49,6 +51,7 @@ MeshEdges::MeshEdges(const std::vector<btVector3>& vertices,
       // Convex: the neighbour's normal is turned away from the owner's about the edge, (n1 x n2) . edge > 0.
       owner.owns_edge[edge] = owner.normal.cross(t.normal).dot(along) > kFlat;
       owner.neighbour_normal[edge] = t.normal;
+      if (owner.owns_edge[edge] && owner.normal.dot(t.normal) < kSharp) owner.at_ridge = t.at_ridge = true;
     }
   }
 }

@@ -83,8 +83,8 @@ void CommandChannel::begin(const robot::Command& command, const std::array<doubl
 }
 
 void CommandChannel::send(const robot::Command& command) {
-  take(command);
   if (loss_ > 0 && noise_.uniform() <= loss_) return;
+  take(command);
   receive();
 }
 

@@ -9,7 +9,7 @@ namespace kenaf::physics {
 namespace {
 
 constexpr double kServoGain_per_s = 30;     // of the position loop
-constexpr double kEndStopTorque_nm = 1000;  // limit of the mechanical stop
+constexpr double kEndStopTorque_nm = 1000;  // limit of the mechanical stop, if its servo is not stronger
 constexpr double kEndStopGain_per_s = 20;
 constexpr double kTeeth_radpnm = 1e-4;      // compliance of the gear's teeth, with play
 constexpr double kSpringDamping_s = 0.005;  // damping of the coupling over its stiffness
@@ -91,13 +91,14 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
 
   // Beyond a limit the stop acts, which is at the arm; otherwise a soft coupling has set its own row already.
   const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
+  const double most_of_stop_nm = std::max(kEndStopTorque_nm, torque);
   if (to_max < 0 || to_min > 0) servo.softness = 0;  // the stop is rigid
   if (to_max < 0) {
     speed = std::min(speed, kEndStopGain_per_s * to_max);
-    servo.low = -kEndStopTorque_nm * time_step_s;
+    servo.low = -most_of_stop_nm * time_step_s;
   } else if (to_min > 0) {
     speed = std::max(speed, kEndStopGain_per_s * to_min);
-    servo.high = kEndStopTorque_nm * time_step_s;
+    servo.high = most_of_stop_nm * time_step_s;
   } else if (servo.softness > 0) {
     return;
   }

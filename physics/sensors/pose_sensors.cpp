@@ -14,16 +14,10 @@ Eigen::Vector3d wrapped(const Eigen::Vector3d& angles) {
 }  // namespace
 
 PostureSense::PostureSense(const Effects& effects, const Eigen::Vector3d& gravity_W_mps2)
-    : q_LW_(Eigen::Quaterniond::Identity()),
+    : q_LW_(leveling(gravity_W_mps2)),
       mount_rad_(effects.posture_mount_rad),
       scale_(effects.posture_scale),
-      bias_rad_(effects.posture_bias_rad) {
-  // up_W is the last row of R_LW = R_y(pitch) R_x(roll), (-sin p, cos p sin r, cos p cos r): solve for r and p.
-  if (!(gravity_W_mps2.norm() > 0)) return;
-  const Eigen::Vector3d up_W = -gravity_W_mps2.normalized();
-  if (up_W.x() == 0 && up_W.y() == 0 && up_W.z() > 0) return;
-  q_LW_ = rotation_from({std::atan2(up_W.y(), up_W.z()), std::asin(std::clamp(-up_W.x(), -1.0, 1.0)), 0});
-}
+      bias_rad_(effects.posture_bias_rad) {}
 
 Eigen::Vector3d PostureSense::sensed(const Eigen::Quaterniond& q_LB) const {
   Eigen::Vector3d angles = roll_pitch_yaw(q_LB);

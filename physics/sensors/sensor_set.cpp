@@ -74,6 +74,8 @@ void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<dou
     track_m[side] *= robot_.encoder_factor(side);
     track_mps[side] *= robot_.encoder_factor(side);
   }
+  if (!any_recorded_) track_m_ = track_m;  // the robot may have travelled before these sensors were put on
+  any_recorded_ = true;
   if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, track_m, robot_);
   track_m_ = track_m;
 

@@ -47,7 +47,7 @@ class SensorSet {
   double posture_delay_steps_, gyro_delay_steps_;  // beyond the sensor's own
   std::vector<Entry> entries_;
   MotionHistory history_;
-  bool has_touch_ = false, has_odometry_ = false;
+  bool has_touch_ = false, has_odometry_ = false, any_recorded_ = false;
   Eigen::Vector3d odometry_{0, 0, 0};
   std::array<double, robot::kTrackCount> track_m_{};
 };

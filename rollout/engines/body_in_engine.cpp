@@ -87,13 +87,14 @@ std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription&
   return samples;
 }
 
-Pose start_of(const runs::Run& run) {
+// `q_LW`: the run's roll and pitch are against gravity (physics::leveling()), the engine's pose is in W.
+Pose start_of(const runs::Run& run, const Eigen::Quaterniond& q_LW) {
   const auto first = [&](std::string_view column) {
     const std::span<const double> values = measured(run, column);
     return *std::ranges::find_if(values, [](double value) { return !std::isnan(value); });
   };
   return {{first("x_m"), first("y_m"), first("z_m")},
-          rotation_from({first("roll_rad"), first("pitch_rad"), first("yaw_rad")})};
+          q_LW.conjugate() * rotation_from({first("roll_rad"), first("pitch_rad"), first("yaw_rad")})};
 }
 
 // Columns that measure the body; Motion has them in this order.
@@ -103,13 +104,15 @@ constexpr std::size_t kYaw = 5;
 using Motion = std::array<double, kColumns.size()>;
 
 // Rates are central differences, from the row before to the row after, so that they are not late.
-Motion motion_of(const Pose& before, const Pose& now, const Pose& after, double span_s) {
-  const Eigen::Vector3d angles = roll_pitch_yaw(now.q);
+Motion motion_of(const Pose& before, const Pose& now, const Pose& after, double span_s,
+                 const Eigen::Quaterniond& q_LW) {
+  const Eigen::Vector3d angles = roll_pitch_yaw(q_LW * now.q);
+  const double yaw_rad = roll_pitch_yaw(now.q).z();
   const Eigen::AngleAxisd turned(before.q.conjugate() * after.q);
   const double angle = std::remainder(turned.angle(), 2 * std::numbers::pi);
   const Eigen::Vector3d rates =
       span_s > 0 ? Eigen::Vector3d(turned.axis() * (angle / span_s)) : Eigen::Vector3d::Zero();
-  return {now.p.x(), now.p.y(), now.p.z(), angles.x(), angles.y(), angles.z(), rates.x(), rates.y(), rates.z()};
+  return {now.p.x(), now.p.y(), now.p.z(), angles.x(), angles.y(), yaw_rad, rates.x(), rates.y(), rates.z()};
 }
 
 // Settles, then runs the engine from row to row.
@@ -122,10 +125,11 @@ std::vector<Motion> motions_in(const Engine& engine, const EngineScene& scene, s
     for (; steps < until; ++steps) runner->step();
     poses.push_back(runner->pose());
   }
+  const Eigen::Quaterniond q_LW = leveling(scene.world.gravity_W_mps2);
   std::vector<Motion> motions;
   for (std::size_t row = 0; row < poses.size(); ++row) {
     const std::size_t before = row > 0 ? row - 1 : 0, after = std::min(row + 1, poses.size() - 1);
-    motions.push_back(motion_of(poses[before], poses[row], poses[after], t_s[after] - t_s[before]));
+    motions.push_back(motion_of(poses[before], poses[row], poses[after], t_s[after] - t_s[before], q_LW));
   }
   return motions;
 }
@@ -162,7 +166,7 @@ runs::Run with_body_of(std::string_view engine, const RobotDescription& robot, c
   EngineScene scene;
   scene.world = with_terrain_effects(world, robot.effects);
   scene.robot = with_effects(robot);
-  scene.X_start = start_of(exact);
+  scene.X_start = start_of(exact, physics::leveling(scene.world.gravity_W_mps2));
   scene.prescribed = drives_of(exact, robot);
   const std::vector<Motion> motions = motions_in(engine_named(engine), scene, exact.column("t_s"));
 

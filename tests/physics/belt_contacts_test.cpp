@@ -148,3 +148,17 @@ TEST_CASE("A flipper's outline is two discs and their tangents") {
   const double lean = 15.0 / 145, rise = std::sqrt(1 - lean * lean);
   CHECK(middle.distance == Approx(lean * 0.07 + rise * 0.08 - 0.055));
 }
+
+TEST_CASE("A large wheel sinks deeper into soft ground than a small one before its face is taken for another") {
+  // the upper face of a block is 50 mm inside: within 0.3 of a radius of 0.3 m, not within 30 mm or 0.3 of 50 mm
+  const auto touches_above = [](double radius_m) {
+    BeltShape wheel = belt();
+    wheel.radius = {radius_m, radius_m};
+    std::size_t above = 0;
+    for (const BeltTouch& touch : on_box(wheel, {2, 2, 1}, {0, 0, -radius_m + 0.05 - 0.5}))
+      above += touch.normal_T.z() > 0.99;
+    return above;
+  };
+  CHECK(touches_above(0.3) > 0);
+  CHECK(touches_above(0.05) == 0);
+}

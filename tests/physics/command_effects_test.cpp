@@ -80,6 +80,22 @@ TEST_CASE("Command delay: between two modes of a joint there is nothing") {
   CHECK(channel.step().flipper[robot::kFrontLeft].value == 0.8);
 }
 
+TEST_CASE("Command loss: of a message that is lost nothing arrives later, joints included") {
+  CommandChannel channel = channel_with({.command_loss = 0.5});
+  robot::Command order, keep;  // every second message leaves the flipper as it is
+  int obeyed = 0;
+  for (int i = 1; i <= 200; ++i) {
+    order.flipper[robot::kFrontLeft] = {robot::JointMode::angle, static_cast<double>(i)};
+    channel.send(order);
+    const double angle = channel.step().flipper[robot::kFrontLeft].value;
+    channel.send(keep);
+    CHECK(channel.step().flipper[robot::kFrontLeft].value == angle);
+    obeyed += angle == i;
+  }
+  CHECK(obeyed > 60);  // 100 expected, with a sigma of 7
+  CHECK(obeyed < 140);
+}
+
 TEST_CASE("Command loss: of a share that is lost the rest arrives, and the command before holds meanwhile") {
   const auto arrivals = [](double loss, std::uint64_t seed, const char* robot) {
     CommandChannel channel = channel_with({.command_loss = loss}, seed, robot);

@@ -328,8 +328,28 @@ TEST_CASE("One side of an encoder is reset, and the other one counts on") {
   const auto counts = read_one<EncoderReading>(world, id).counts;
   const double counts_in_1s = 0.2 / 0.065 * 2000 / (2 * std::numbers::pi);
   CHECK(static_cast<double>(counts[robot::kLeft]) == Approx(counts_in_1s).margin(2));
-  CHECK(counts[robot::kRight] > 1.9 * counts_in_1s);
+  CHECK(static_cast<double>(counts[robot::kRight]) > 1.9 * counts_in_1s);
   CHECK_THROWS_AS(world.reset_track_sensor(id, 9, robot::kLeft), std::out_of_range);
+}
+
+TEST_CASE("Instruments that are put on a robot on its way count the way from there") {
+  const RobotDescription kenaf = load_robot("kenaf");
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(kenaf, "robot", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 2);
+  REQUIRE(world.truth(id).X_WB.p.x() > 0.3);
+  world.add_instruments(id, kenaf);
+  run(world, 0.5);
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples, 1);
+  bool any = false;
+  for (const SensorSample& sample : samples)
+    if (const auto* odometry = std::get_if<OdometryReading>(&sample.reading)) {
+      CHECK(odometry->x_m == Approx(0.1).margin(2e-3));  // 0.2 m/s for 0.5 s
+      any = true;
+    }
+  CHECK(any);
 }
 
 TEST_CASE("Instruments report what the sensors of a robot would that moves alike, and stay until it is removed") {

@@ -79,6 +79,19 @@ TEST_CASE("Obstacles: a mesh keeps its foot, ground under the start keeps all, a
   CHECK(with_terrain_effects(world, {.obstacle_height_m = -0.04}).boxes[0].X_WBox.p.z() == 0.1);
 }
 
+TEST_CASE("Obstacles: a mesh with a vertical face in line with a start is moved like any other") {
+  // a wall of two triangles in the plane y = 0, in which the start at the origin lies, too: seen from above a line
+  WorldDescription world = ground();
+  TriangleMesh wall;
+  wall.vertices_W = {{1, 0, 0}, {3, 0, 0}, {3, 0, 0.2}, {1, 0, 0.2}};
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  world.meshes = {wall};
+  REQUIRE(world.start_poses.front().X_WB.p.head<2>() == Eigen::Vector2d(0, 0));
+  const TriangleMesh moved = with_terrain_effects(world, {.obstacle_position_m = 0.1}).meshes[0];
+  CHECK(moved.vertices_W[1] == Eigen::Vector3d(3.1, 0, 0));
+  CHECK(with_terrain_effects(world, {.obstacle_height_m = 0.05}).meshes[0].vertices_W[2].z() == Approx(0.25));
+}
+
 TEST_CASE("Obstacle position: a robot meets the wall that much later") {
   for (const double shift_m : {-0.1, 0.0, 0.1}) {
     WorldDescription nominal = ground();

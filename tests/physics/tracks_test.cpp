@@ -379,3 +379,44 @@ TEST_CASE("Without flippers and with little friction Kenaf climbs no step") {
   CHECK(world.truth(id).X_WB.p.x() == Approx(0.71).margin(0.01));
   CHECK(world.truth(id).X_WB.p.z() == Approx(0.09).margin(0.005));
 }
+
+namespace {
+
+// A pole of 8 mm radius and 1 m height with twelve sides, on the ground.
+TriangleMesh pole(double x_m, double y_m) {
+  constexpr std::uint32_t kSides = 12;
+  TriangleMesh mesh;
+  for (const double z_m : {0.0, 1.0})
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kSides;
+      mesh.vertices_W.emplace_back(x_m + 0.008 * std::cos(angle), y_m + 0.008 * std::sin(angle), z_m);
+    }
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t j = (i + 1) % kSides;
+    mesh.triangles.push_back({i, j, kSides + j});
+    mesh.triangles.push_back({i, kSides + j, kSides + i});
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("Poles that are narrower than the distance of a belt's slices stop the robot") {
+  // before each track, from 3 to 19 mm beside its middle; the slices are at 0 and 22.5 mm
+  const RobotDescription kenaf = load_robot("kenaf");
+  const TrackDescription& track = kenaf.track.front();
+  REQUIRE(track.width_m == Approx(0.09));
+  const double y_m = track.p_BT_m.y() + 0.011, x_m = 0.6;
+  WorldDescription world = ground();
+  const auto end_m = [&] {
+    World driven(world, {}, 1);
+    const RobotId id = driven.add_robot(kenaf, "robot", {});
+    driven.set_command(id, drive(0.2, 0.2));
+    run(driven, 4);
+    return driven.truth(id).X_WB.p.x();
+  };
+  CHECK(end_m() > 0.7);
+  world.meshes = {pole(x_m, y_m), pole(x_m, -y_m)};
+  CHECK(end_m() == Approx(x_m - 0.008 - track.p_BT_m.x() - track.length_m / 2).margin(0.01));
+}
+

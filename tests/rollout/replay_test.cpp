@@ -28,7 +28,7 @@ TEST_CASE("A run's commands, at its times from its first row on, an empty cell h
   CHECK(manoeuvre.start->y_m == 1);
   CHECK(manoeuvre.start->yaw_rad == 2);
   CHECK_FALSE(manoeuvre.start->z_m);
-  CHECK(*manoeuvre.start->flipper_rad == std::array{0.5, 0.6, 0.7, 0.8});
+  CHECK(manoeuvre.start->flipper_rad == std::array<std::optional<double>, 4>{0.5, 0.6, 0.7, 0.8});
   REQUIRE(manoeuvre.timed.size() == 3);
   CHECK(manoeuvre.timed[0].t_s == 0);
   CHECK(manoeuvre.timed[1].t_s == 0.5);
@@ -46,6 +46,30 @@ TEST_CASE("A run without commands or without a start cannot be repeated, and say
                     Contains("run.csv: has no yaw_rad"));
   CHECK_THROWS_WITH(replay("t_s,cmd_track_left_mps,cmd_track_right_mps\n"), Contains("has no commands"));
   CHECK_THROWS_AS(load_manoeuvre("replay:/no/such/file.csv"), runs::RunFileError);
+}
+
+TEST_CASE("Flippers that no column tells of stay where the robot's description has them, each by itself") {
+  const auto angles_of = [](const physics::RobotDescription& robot, const std::string& header, const std::string& row) {
+    std::vector<std::string> unsupported;
+    RollOutOptions exact;
+    exact.noise_scale = 0;
+    const std::string columns = "t_s,cmd_track_left_mps,cmd_track_right_mps,x_m,y_m,yaw_rad";
+    const std::string cells = ",0,0,0,0,0";
+    const RollOut out = roll_out(robot, physics::load_world("flat", unsupported),
+                                 replay(columns + header + "\n0" + cells + row + "\n1.5" + cells + row + "\n"), exact);
+    std::vector<double> angles;
+    for (const char* column : {"flipper_fl_rad", "flipper_fr_rad", "flipper_rl_rad", "flipper_rr_rad"})
+      for (const double angle_rad : {out.run.column(column).front(), out.run.column(column).back()})
+        angles.push_back(angle_rad);
+    return angles;
+  };
+  physics::RobotDescription robot = physics::load_robot("kenaf");
+  robot.flipper.front().start_angle_rad = 1;
+  for (const double angle : angles_of(robot, "", "")) CHECK(angle == Approx(1).margin(0.01));
+  const std::vector<double> one = angles_of(robot, ",flipper_fl_rad", ",0.5");
+  for (std::size_t i = 0; i < one.size(); ++i) CHECK(one[i] == Approx(i < 2 ? 0.5 : 1).margin(0.01));
+  const std::vector<double> commanded = angles_of(robot, ",cmd_flipper_rr_rad", ",0.7");
+  for (std::size_t i = 0; i < commanded.size(); ++i) CHECK(commanded[i] == Approx(i < 6 ? 1 : 0.7).margin(0.01));
 }
 
 TEST_CASE("The replay of a rollout drives the same path") {

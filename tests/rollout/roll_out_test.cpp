@@ -296,3 +296,23 @@ TEST_CASE("Effects on obstacles change no motion where there are none, and count
   const physics::WorldDescription step = physics::load_world(climb.world, unsupported);
   CHECK_FALSE(as_it_moves(higher, step, climb) == as_it_moves(kenaf, step, climb));
 }
+
+TEST_CASE("A run begins when its flippers have arrived, however slow their servos are") {
+  Manoeuvre manoeuvre = straight(0, 0.5);
+  manoeuvre.phases.front().flipper_rad = {{0.6, 0.6, 0.9, 0.9}};
+  const auto first_angles = [&](const physics::RobotDescription& robot) {
+    const RollOut out = roll_out(robot, flat(), manoeuvre, exact());
+    return std::array{out.run.column("flipper_fl_rad").front(), out.run.column("flipper_rr_rad").front()};
+  };
+  physics::RobotDescription slow = physics::load_robot("kenaf");
+  slow.servo.max_speed_radps = 0.08;  // 12 s from -0.05 to 0.9 rad
+  slow.flipper.front().start_angle_rad = -0.05;
+  physics::RobotDescription lagging = physics::load_robot("kenaf"), late = lagging;
+  lagging.effects.flipper_lag_s = 3;
+  late.effects.command_delay_s = 1;
+  for (const physics::RobotDescription& robot : {slow, lagging, late}) {
+    const auto [front_left, rear_right] = first_angles(robot);
+    CHECK(front_left == Approx(0.6).margin(0.02));
+    CHECK(rear_right == Approx(0.9).margin(0.02));
+  }
+}

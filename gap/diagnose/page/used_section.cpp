@@ -153,7 +153,8 @@ std::string method_section(const Diagnosis& d) {
          paragraph(fmt::format(
              "The simulated robot receives the commands of each run from the measured initial state, and the means of "
              "each channel over {} s are compared at the same times. Differences are scaled by the noise, which is "
-             "estimated from repeated runs, and by the uncertainty of the simulation itself: the exact start, the "
+             "estimated from repeated runs where there are any, and by the uncertainty of the simulation itself: the "
+             "exact start, the "
              "contact stiffness and damping, the time step, the solver iterations. Each effect of the catalogue and "
              "each number of the description is simulated over its range and fitted, alone and together with others, "
              "in each stage separately: for the body, the simulated tracks move as measured. Model discrepancy weakens "

@@ -23,7 +23,7 @@ export function createPast(world, history, { begin, show, mine }) {
     if (at_s === null) return announce("");
     const robot = mine();
     const words = `Looking back: ${ago(history.last_s() - at_s)}, at ${fixed(at_s, 2)} s. The world ${world.paused ? "is paused" : "goes on"}. ` +
-      `Nothing drives${robot ? `; Space stands ${robot.about.name}` : ""}. Esc or \u201cLive\u201d returns.`;
+      `Nothing drives${robot ? `; with Space ${robot.about.name} stands` : ""}. Esc or \u201cLive\u201d returns.`;
     if (banner.textContent !== words) banner.textContent = words;
     announce(words);
   }

@@ -123,4 +123,25 @@ TEST_CASE("A robot on wheels has candidates of wheels, and writes them for every
   CHECK(changed.find("width_m = 0.04  # chosen") != std::string::npos);
 }
 
+TEST_CASE("Both ends of each range make a possible robot, however the pairs of wheels differ") {
+  // the rear wheels are closer together and wider, which the common numbers must leave possible, and grip as well as
+  // anything may
+  std::string text = wheeled_text();
+  const std::size_t rear = text.find("-0.3, 0.25");
+  text.replace(rear, 10, "-0.3, 0.10");
+  text.replace(text.find("width_m = 0.04", rear), 14, "width_m = 0.16");
+  text.replace(text.find("friction_along = 0.8", rear), 20, "friction_along = 9.0");
+  const RobotDescription robot = physics::parse_robot(text, "robot.toml");
+  bool any_separation = false;
+  for (const Candidate& candidate : description_candidates(robot))
+    for (const double end : {candidate.min, candidate.max}) {
+      RobotDescription moved = robot;
+      candidate.set(moved, end);
+      INFO(candidate.name << " = " << end);
+      CHECK(why_impossible(moved).empty());
+      any_separation |= candidate.name == "wheel.separation_m" && end < candidate.present;
+    }
+  CHECK(any_separation);
+}
+
 }  // namespace kenaf::gap::candidates

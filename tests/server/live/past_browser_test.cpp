@@ -87,7 +87,7 @@ TEST_CASE("In a browser: one looks back while the world goes on, nothing drives 
         "Manual1 stands: nothing drives while you look back");
   CHECK(desk.browser.evaluate("document.getElementById('past-banner').textContent")
             .get<std::string>()
-            .find("Space stands Manual1") != std::string::npos);
+            .find("with Space Manual1 stands") != std::string::npos);
   const double before_s = desk.browser.evaluate("parseFloat(document.getElementById('time').textContent)");
   desk.browser.wait_for("parseFloat(document.getElementById('time').textContent) > " + std::to_string(before_s + 0.2));
 
