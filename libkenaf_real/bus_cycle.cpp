@@ -51,7 +51,7 @@ BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
       period_(to_time(period_s)),
       image_(bus),
       sent_(bus.drives.size()),
-      cycles_since_(bus.drives.size()) {
+      sent_at_(bus.drives.size()) {
   for (std::size_t i = 0; i < bus.drives.size(); ++i) pdos_.push_back(canbus::pdos_of(bus, i));
   master_.watch([this](const canopen::ReceivedFrame& frame) { image_.on_frame(frame); });
 }
@@ -94,13 +94,29 @@ std::optional<Beat> BusCycle::wait() {
   return Beat{number_, at};
 }
 
+double BusCycle::period_s() const {
+  return seconds(period_);
+}
+
 void BusCycle::send(const DriveOrders& orders) {
+  send(orders, false);
+}
+
+void BusCycle::send_at_once(const DriveOrders& orders) {
+  send(orders, true);
+}
+
+void BusCycle::send(const DriveOrders& orders, bool at_once) {
   master_.check_pause();
   for (std::size_t i = 0; i < orders.size(); ++i) {
-    // A drive that takes commands less often gets each n-th; only a stop does not wait.
-    const bool waits = ++cycles_since_[i] < bus_.drives[i].device.command_every;
-    if (waits && orders[i].controlword != canopen::kControlQuickStop) continue;
-    cycles_since_[i] = 0;
+    // In SYNCs, as the drive counts them: two orders in one cycle, the loop's last and a stop, are two too many.
+    const int every = bus_.drives[i].device.command_every;
+    const bool has_turn = every == 1 || !sent_at_[i] || number_ - *sent_at_[i] >= static_cast<std::uint32_t>(every);
+    // One quick stop stops a drive: repeated ones, which are for lost frames, have time.
+    const bool is_first_stop =
+        orders[i].controlword == canopen::kControlQuickStop && sent_[i].controlword != canopen::kControlQuickStop;
+    if (!has_turn && !(at_once && is_first_stop)) continue;
+    sent_at_[i] = number_;
     const std::array<std::int64_t, 2> values{orders[i].controlword, orders[i].target};
     master_.send(pack(pdos_[i].command, bus_.drives[i].node, values));
     sent_[i] = orders[i];

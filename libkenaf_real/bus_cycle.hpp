@@ -51,11 +51,16 @@ class BusCycle {
   // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods have passed; if several SYNCs
   // wait, only the newest is a beat. nullopt: interrupted. Throws hrt::Error(HRT_E_LINK) if no more SYNC comes.
   std::optional<Beat> wait();
-  // In force from the next SYNC on; late if that has already come. Throws HeldUp.
+  // In force from the next SYNC on; late if that has already come. A drive that takes commands less often
+  // (Device::command_every) gets each n-th. Throws HeldUp.
   void send(const DriveOrders& orders);
+  // The same for stops that cannot wait: a drive's first quick stop goes out of its turn. Such a drive may answer that
+  // with a fault, which stops it too, but without torque afterwards.
+  void send_at_once(const DriveOrders& orders);
   const DriveOrders& sent() const { return sent_; }  // the last that went to each drive; zeros at first
   std::uint32_t late_orders() const { return late_; }
   double round_trip_s() const { return round_trip_s_; }  // newest SYNC to its last answer
+  double period_s() const;
 
   // From now on a boot-up message counts as a restart.
   void watch_restarts() { image_.watch_restarts(); }
@@ -71,6 +76,7 @@ class BusCycle {
 
  private:
   bool is_silent(const std::optional<canopen::Time>& at, double limit_s) const;
+  void send(const DriveOrders& orders, bool at_once);
 
   Master& master_;
   const canbus::RobotBus& bus_;
@@ -78,7 +84,7 @@ class BusCycle {
   ProcessImage image_;
   std::vector<canbus::DrivePdos> pdos_;
   DriveOrders sent_;
-  std::vector<int> cycles_since_;  // the last command to each drive
+  std::vector<std::optional<std::uint32_t>> sent_at_;  // Beat::number of the last command to each drive
   std::optional<canopen::Time> first_sync_at_, answered_sync_at_;
   std::uint32_t number_ = 0, late_ = 0;
   double round_trip_s_ = 0;

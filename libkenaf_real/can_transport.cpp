@@ -228,10 +228,18 @@ void CanTransport::close() {
                                 "stop by themselves after {} s",
                                 what, s->robot.master_silence_s));
   };
+  const auto note_torque = [&](std::string_view what) {
+    not_stopped = Error(HRT_E_DEVICE,
+                        fmt::format("closed, and at rest, but not held with torque: {}; support the robot, which may "
+                                    "sink or roll",
+                                    what));
+  };
   // A bus that is down takes no quick stop.
   const auto stop = [&] {
     try {
-      if (const std::string running = power_down(s->cycle); !running.empty()) note(HRT_E_DEVICE, running);
+      const NotHeld not_held = power_down(s->cycle);
+      if (!not_held.without_torque.empty()) note_torque(not_held.without_torque);
+      if (!not_held.running.empty()) note(HRT_E_DEVICE, joined(not_held.running, not_held.without_torque));
     } catch (const Error&) {
       try_quick_stop(s->cycle);
       throw;

@@ -123,16 +123,27 @@ void begin_event_timers(BusCycle& cycle, AllWatches& watches, double period_s) {
   }
 }
 
-void end_watches(BusCycle& cycle, std::size_t drive) {
-  const NamedNode node = drive_node(cycle.bus(), drive);
-  for (const canbus::SdoStep& end : {canbus::write_of_event_timer(canbus::pdos_of(cycle.bus(), drive).command, 0),
-                                     canbus::end_of_watch(cycle.bus().drives[drive].device)}) {
+void end_watches(BusCycle& cycle, const std::vector<std::size_t>& drives, const DriveOrders& meanwhile) {
+  const RobotBus& bus = cycle.bus();
+  const auto end = [&](std::size_t drive, const canbus::SdoStep& step) {
     try {
-      cycle.master().write_if_there(node, end.what);
+      cycle.master().write_if_there(drive_node(bus, drive), step.what);
     } catch (const Error&) {
       // at rest all the same
     }
+  };
+  std::vector<std::size_t> flippers_first = drives;
+  std::ranges::stable_partition(flippers_first, [&](std::size_t drive) { return bus.drives[drive].is_flipper(); });
+  if (bus.event_timer != false) {
+    for (const std::size_t drive : flippers_first) {
+      end(drive, canbus::write_of_event_timer(canbus::pdos_of(bus, drive).command, 0));
+      cycle.wait();
+      cycle.send(meanwhile);
+    }
   }
+  // No commands are needed any more, and the heartbeat goes on meanwhile.
+  for (const std::size_t drive : flippers_first) end(drive, canbus::end_of_watch(bus.drives[drive].device));
+  cycle.wait();
 }
 
 std::string describe_watches(const RobotBus& bus, const AllWatches& watches, double period_s) {

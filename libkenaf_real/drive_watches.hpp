@@ -37,9 +37,11 @@ DriveWatches find_watches(Master& master, const canbus::RobotBus& bus, std::size
 // value becomes one that is not there.
 void begin_event_timers(BusCycle& cycle, AllWatches& watches, double period_s);
 
-// A drive that has stopped may hold its position without a master. One that refuses this is at rest all the same; its
-// reaction to the end of heartbeat and commands is then as before.
-void end_watches(BusCycle& cycle, std::size_t drive);
+// Drives that have stopped may hold their position without a master. One that refuses this is at rest all the same; its
+// reaction to the end of heartbeat and commands is then as before. The event timers end first, flippers' before all,
+// with a cycle of the orders `meanwhile` after each: a timer that runs out while others are ended would be a fault to
+// some drives, and a flipper in fault no longer carries the robot. Ends with a cycle that shows all states.
+void end_watches(BusCycle& cycle, const std::vector<std::size_t>& drives, const DriveOrders& meanwhile);
 
 // Says of each drive, a line each, which watches it has and how long they wait.
 std::string describe_watches(const canbus::RobotBus& bus, const AllWatches& watches, double period_s);

@@ -27,17 +27,17 @@ constexpr Time kModeChange = std::chrono::seconds(1);
 constexpr Time kHomingBegins = std::chrono::milliseconds(100);
 // A drive's emergency message may come so much later than the statusword that shows the fault.
 constexpr Time kEmergencyFollows = std::chrono::milliseconds(20);
-constexpr Time kPowerDown = std::chrono::milliseconds(300);
+// A stop that is ordered shows within the time that one takes whose commands stay away, and these cycles of answers.
+constexpr double kShortestPowerDown_s = 0.3, kStopShows_s = 0.1;
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
-// but not every drive supports it; after this many cycles quick stop is left through "switch on disabled".
+// but not every drive supports it; after this many commands quick stop is left through "switch on disabled".
 constexpr int kHoldThroughQuickStop = 20;
 // A drive leaves quick stop for operation only by an "enable" that follows another controlword: repeated ones do not
 // count (PowerStates in can/candrives/power_states.hpp). One that stopped by itself because its master died has
 // "enable" as its last controlword. So it first gets "quick stop", which has no effect in that state (CiA 402-2, 10),
-// and gets it again every few cycles, since a frame may get lost.
-constexpr int kEdgeEachCycles = 4;
+// and gets it again every few commands, since a frame may get lost.
+constexpr int kEdgeEachCommands = 4;
 constexpr double kHomeTolerance_rad = 0.05;  // between a drive's position after homing and the expected one
-constexpr double kStanding = 0.01;           // a track slower than this share of its full speed stands
 
 PowerState state_of(const BusCycle& cycle, std::size_t i) {
   return canopen::power_state_of(cycle.image().drive(i).statusword);
@@ -96,9 +96,11 @@ void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(st
   }
 }
 
-std::uint16_t control_out_of_quick_stop(int cycles_in_it) {
-  if (cycles_in_it >= kHoldThroughQuickStop) return canopen::kControlDisableVoltage;
-  return cycles_in_it % kEdgeEachCycles == 1 ? canopen::kControlQuickStop : canopen::kControlEnable;
+// A drive that gets each n-th order gets one of each n: an edge of a single cycle might never reach it.
+std::uint16_t control_out_of_quick_stop(const canbus::Device& device, int cycles_in_it) {
+  const int commands_before = (cycles_in_it - 1) / device.command_every;
+  if (commands_before >= kHoldThroughQuickStop) return canopen::kControlDisableVoltage;
+  return commands_before % kEdgeEachCommands == 0 ? canopen::kControlQuickStop : canopen::kControlEnable;
 }
 
 // A reset acts on the rising edge of bit 7. A drive may look at the controlword less often than it gets one.
@@ -113,7 +115,8 @@ void take_to(BusCycle& cycle, PowerState wanted) {
   std::vector<int> cycles_in_quick_stop(drives), cycles_in_fault(drives);
   const auto controlword = [&](std::size_t i) {
     const PowerState state = state_of(cycle, i);
-    if (state == PowerState::quick_stop_active) return control_out_of_quick_stop(++cycles_in_quick_stop[i]);
+    if (state == PowerState::quick_stop_active)
+      return control_out_of_quick_stop(device_of(cycle, i), ++cycles_in_quick_stop[i]);
     if (state == PowerState::fault) return control_out_of_fault(device_of(cycle, i), ++cycles_in_fault[i]);
     if (state == PowerState::switched_on && wanted == PowerState::switched_on) return canopen::kControlSwitchOn;
     return canopen::control_towards_operation(state, cycle.sent()[i].controlword);
@@ -262,9 +265,12 @@ void home(BusCycle& cycle) {
                            patience_s, status(i));
       });
   // In profile position mode bit 4 is a new set-point: it must be low, and seen as low, before the mode changes. So
-  // these orders, without it, are sent in three cycles. run_until asks for drive 0 first, and once in each cycle.
-  constexpr int kCyclesLow = 3;
-  int cycles_low = 0;
+  // these orders, without it, are sent in three cycles, or three of the drive that takes them least often. run_until
+  // asks for drive 0 first, and once in each cycle.
+  constexpr int kCommandsLow = 3;
+  int cycles_low = 0, cycles_of_command = 1;
+  for (const canbus::DriveOnBus& drive : cycle.bus().drives)
+    cycles_of_command = std::max(cycles_of_command, drive.device.command_every);
   run_until(
       cycle, kModeChange,
       [&](std::size_t i) {
@@ -272,7 +278,7 @@ void home(BusCycle& cycle) {
       },
       [&](std::size_t i) {
         if (i == 0) ++cycles_low;
-        return cycles_low >= kCyclesLow;
+        return cycles_low >= kCommandsLow * cycles_of_command;
       },
       [&](std::size_t i) { return not_enabled(cycle, i); });
   for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
@@ -283,7 +289,7 @@ void home(BusCycle& cycle) {
 
 bool is_at_rest(const BusCycle& cycle, std::size_t track) {
   const canbus::DriveOnBus& drive = cycle.bus().drives[track];
-  return std::abs(velocity_from_drive(drive.units, cycle.image().drive(track).velocity)) < kStanding * drive.max_speed;
+  return std::abs(velocity_from_drive(drive.units, cycle.image().drive(track).velocity)) < canbus::kAtRest_mps;
 }
 
 std::string not_stopped(const BusCycle& cycle, std::size_t i,
@@ -293,6 +299,36 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
   const PowerState state = state_of(cycle, i);
   if (state != PowerState::operation_enabled) return name + " still runs";
   return fmt::format("{} stays in the state \"{}\"", name, describe(state));
+}
+
+DriveOrders orders_to_stop(const BusCycle& cycle) {
+  DriveOrders orders(cycle.bus().drives.size());
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i)
+    orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
+  return orders;
+}
+
+// How long a drive may take to stop that misses its order to, and so stops when its event timer ends.
+double longest_power_down_s(const BusCycle& cycle) {
+  double longest_s = kShortestPowerDown_s;
+  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
+    const double gap_s = longest_command_gap_s(cycle.bus(), i, cycle.period_s());
+    longest_s = std::max(longest_s, longest_stop_s(cycle.bus(), gap_s) + kStopShows_s);
+  }
+  return longest_s;
+}
+
+// A drive that has stopped as ordered stays in "quick stop active" and holds (0x605A = 6).
+std::string no_torque(const BusCycle& cycle, std::size_t i) {
+  const DriveInput& drive = cycle.image().drive(i);
+  return fmt::format("{} is in the state \"{}\" (statusword {:#06x}){}{}{}", to_string(drive_node(cycle.bus(), i)),
+                     describe(state_of(cycle, i)), drive.statusword, drive.emergency ? ": " : "",
+                     drive.emergency ? describe(*drive.emergency) : "",
+                     advice_on_emergency(device_of(cycle, i), drive.emergency));
+}
+
+void add_to(std::string& list, const std::string& what) {
+  list += (list.empty() ? "" : ", ") + what;
 }
 
 }  // namespace
@@ -315,10 +351,7 @@ void power_up(BusCycle& cycle) try {
 }
 
 void quick_stop(BusCycle& cycle) {
-  DriveOrders orders(cycle.bus().drives.size());
-  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i)
-    orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
-  cycle.send(orders);
+  cycle.send_at_once(orders_to_stop(cycle));
 }
 
 void try_quick_stop(BusCycle& cycle) try { quick_stop(cycle); } catch (const std::exception&) {
@@ -338,28 +371,38 @@ void lose(BusCycle& cycle, std::size_t drive) {
           loss, emergency.empty() ? "" : ": ", emergency, advice));
 }
 
-std::string power_down(BusCycle& cycle) {
-  const Time begin = cycle.master().now();
+NotHeld power_down(BusCycle& cycle) {
+  const std::size_t drives = cycle.bus().drives.size();
+  const Time begin = cycle.master().now(), until = begin + to_time(longest_power_down_s(cycle));
   const auto is_new = [&](const std::optional<Time>& at) { return at && *at > begin; };
   const auto has_stopped = [&](std::size_t i) {
     const DriveInput& drive = cycle.image().drive(i);
     const bool left = is_new(drive.state_at) && state_of(cycle, i) != PowerState::operation_enabled;
     return left && (cycle.bus().drives[i].is_flipper() || (is_new(drive.effort_at) && is_at_rest(cycle, i)));
   };
-  std::string running;
+
+  // Repeated in each cycle, since a frame may not reach every drive, but in the turn of drives that take few commands:
+  // a fault for one too many would take the torque from flippers that carry the robot.
+  NotHeld result;
+  std::vector<std::size_t> stopped;
   do {
-    // repeated in each cycle: a frame may not reach every drive
-    quick_stop(cycle);
+    cycle.send(orders_to_stop(cycle));
     cycle.wait();
-    running.clear();
-    for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
-      if (!has_stopped(i)) running += (running.empty() ? "" : ", ") + not_stopped(cycle, i, is_new);
+    result.running.clear();
+    stopped.clear();
+    for (std::size_t i = 0; i < drives; ++i) {
+      if (has_stopped(i))
+        stopped.push_back(i);
+      else
+        add_to(result.running, not_stopped(cycle, i, is_new));
     }
-  } while (!running.empty() && cycle.master().now() < begin + kPowerDown);
-  for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i) {
-    if (has_stopped(i)) end_watches(cycle, i);
+  } while (!result.running.empty() && cycle.master().now() < until);
+
+  end_watches(cycle, stopped, orders_to_stop(cycle));
+  for (const std::size_t i : stopped) {
+    if (state_of(cycle, i) != PowerState::quick_stop_active) add_to(result.without_torque, no_torque(cycle, i));
   }
-  return running;
+  return result;
 }
 
 }  // namespace kenaf::real

@@ -14,7 +14,7 @@ namespace kenaf::real {
 // exception all drives are commanded to stop.
 void power_up(BusCycle& cycle);
 
-// Quick stop of all drives, in one cycle. Does not wait.
+// Quick stop of all drives, in one cycle. Does not wait, not even for the turn of drives that take few commands.
 void quick_stop(BusCycle& cycle);
 // The same, ignoring a bus that refuses it: for callers with a more important error to report.
 void try_quick_stop(BusCycle& cycle);
@@ -23,10 +23,16 @@ void try_quick_stop(BusCycle& cycle);
 // cause, with the text of its emergency message, for which it waits some milliseconds.
 [[noreturn]] void lose(BusCycle& cycle, std::size_t drive);
 
+// Drives after power_down, named; "": none.
+struct NotHeld {
+  std::string running;         // not seen to stop
+  std::string without_torque;  // at rest, but no longer holding their position
+};
+
 // Commands quick stop in each cycle until all drives show that they have left operation enabled and the tracks that
-// they stand, 0.3 s at most. Drives that have done so stop watching the master's heartbeat and commands and hold their
-// position; the others keep watching, and so stop by themselves when these end. Returns a description of these, "" if
-// there are none. Throws BusError.
-std::string power_down(BusCycle& cycle);
+// they stand, for as long as the robot's longest stop takes, and 0.3 s at least. Drives that have done so stop watching
+// the master's heartbeat and commands and hold their position; the others keep watching, and so stop by themselves when
+// these end. Throws BusError.
+NotHeld power_down(BusCycle& cycle);
 
 }  // namespace kenaf::real

@@ -38,7 +38,7 @@ struct Device {
   Mapping mapping = Mapping::written;
   bool mapping_count_first = false;  // a mapping's count is written to 0 before its PDO is switched off, not after it
   int command_pdo = 1;               // number of the RPDO for controlword and target; with Mapping::written
-  int command_every = 1;             // cycles from one command to the next; a quick stop does not wait
+  int command_every = 1;             // cycles from one command to the next; the first of urgent stops does not wait
 
   ModeChange mode_change = ModeChange::enabled;
   bool halt_blocks_mode = false;    // the mode is not written before commands without halt bit arrive

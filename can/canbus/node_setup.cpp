@@ -81,7 +81,7 @@ void add_parameters(const RobotBus& bus, std::size_t i, double period_s, std::ve
     write(object::target_velocity, 0, "target velocity before the drive is enabled");
   }
   if (drive.mode == DriveMode::cyclic_position || drive.mode == DriveMode::cyclic_velocity) {
-    const auto [number, exponent] = interpolation_time(period_s);
+    const auto [number, exponent] = interpolation_time(drive.device.command_every * period_s);
     write(object::interpolation_period, number, "time between targets");
     write(object::interpolation_exponent, exponent, "time between targets, power of ten");
   }

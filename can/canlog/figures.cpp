@@ -99,6 +99,22 @@ void add_cycle_times(const std::vector<Cycle>& cycles, Figures& figures) {
   figures.command_time = spread_of(std::move(commands_s));
 }
 
+// True if each drive has got a command in this cycle or, if it takes only each n-th, in one of the n - 1 before. What
+// lies before the log's begin or a step of its clock counts as having had one.
+bool is_commanded(const std::vector<Cycle>& cycles, std::size_t at, const Network& network) {
+  const std::vector<canbus::DriveOnBus>& drives = network.bus().drives;
+  for (std::size_t drive = 0; drive < drives.size(); ++drive) {
+    const auto turns = static_cast<std::size_t>(drives[drive].device.command_every);
+    bool has_one = false;
+    for (std::size_t before = 0; before < turns && !has_one; ++before) {
+      const bool is_in_log = before <= at && cycles[at - before].clock_steps == cycles[at].clock_steps;
+      has_one = !is_in_log || cycles[at - before].commanded.contains(drive);
+    }
+    if (!has_one) return false;
+  }
+  return true;
+}
+
 // Counts cycles that begin after the first motion and whose next SYNC comes before the last motion.
 void add_late_commands(const Log& log, const Network& network, const std::vector<Cycle>& cycles, Figures& figures) {
   for (const LoopSpan& span : loop_spans(log, network)) {
@@ -106,7 +122,7 @@ void add_late_commands(const Log& log, const Network& network, const std::vector
     for (; cycle != cycles.end() && cycle + 1 != cycles.end() && (cycle + 1)->frame <= span.last; ++cycle) {
       if (cycle->clock_steps != (cycle + 1)->clock_steps) continue;
       ++figures.driven_cycles;
-      if (cycle->commanded.size() < network.bus().drives.size()) ++figures.late_commands;
+      if (!is_commanded(cycles, static_cast<std::size_t>(cycle - cycles.begin()), network)) ++figures.late_commands;
     }
   }
 }

@@ -43,7 +43,7 @@ struct Figures {
   std::optional<Spread> answer_time;   // SYNC to the last TPDO of its cycle
   std::optional<Spread> command_time;  // SYNC to the last RPDO of its cycle
   std::size_t driven_cycles = 0;       // from the first motion to the last
-  std::size_t late_commands = 0;       // number of these SYNCs before which not every drive had received a new command
+  std::size_t late_commands = 0;       // of these, without a new command to a drive whose turn it was
 };
 Figures figures_of(const Log& log, const Network& network);
 

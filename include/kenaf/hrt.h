@@ -235,7 +235,7 @@ int hrt_kenaf_init_with(const hrt_config* config);
  * or while another thread opens or closes it: HRT_OK; an opening continues.
  * HRT_E_RECORD: closed, but the recording is incomplete. libkenaf_real also HRT_E_DEVICE and HRT_E_LINK: closed, but
  * drives, named by hrt_last_error(), or the bus did not confirm that the robot stopped; its drives stop by themselves
- * master_silence_s later. */
+ * master_silence_s later; or drives have stopped, but no longer hold their position, so that flippers may sink. */
 int hrt_close(void);
 
 /* ---- Motions: blocking, closed-loop, one at a time ----

@@ -25,3 +25,13 @@ TEST_CASE("The time between targets is in milliseconds where it is a whole numbe
     CHECK(exponent == one.exponent);
   }
 }
+
+TEST_CASE("A drive that gets each third command is told the time between those") {
+  canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
+  bus.drives[2].mode = canopen::DriveMode::cyclic_position;
+  bus.drives[2].device.command_every = 3;
+  for (const canbus::SdoStep& step : set_up_of_drive(bus, 2, 0.01)) {
+    if (step.what.object == canopen::object::interpolation_period.object) CHECK(step.what.value == 30);
+    if (step.what.object == canopen::object::interpolation_exponent.object) CHECK(step.what.value == -3);
+  }
+}

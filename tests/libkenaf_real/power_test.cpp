@@ -76,6 +76,98 @@ TEST_CASE("Closing leaves a drive that does not stop to its watch of the heartbe
   CHECK(robot.all_are(PowerState::quick_stop_active));
 }
 
+namespace {
+
+// Answers to SDO requests come 9 ms after them at the earliest, with the next frame that anybody sends.
+void delay_answers(RobotOnBus& robot) {
+  struct Late {
+    canopen::Frame frame;
+    canopen::Time due;
+  };
+  robot.wire.alter = [&robot, late = std::vector<Late>()](canopen::Frame& frame, Sender sender) mutable {
+    if (sender == Sender::other) return true;
+    const canopen::Time now = robot.wire.now();
+    const std::vector<Late> waiting = std::exchange(late, {});
+    for (const Late& one : waiting) now >= one.due ? robot.wire.send_as_other(one.frame) : late.push_back(one);
+    if (frame.id < 0x581 || frame.id > 0x5ff) return true;
+    late.push_back({frame, now + std::chrono::milliseconds(9)});
+    return false;
+  };
+}
+
+bool ends_event_timer(const candrives::LoggedFrame& one, canopen::NodeId node) {
+  return one.sender == Sender::master && one.frame.id == 0x600 + node &&
+         canopen::get_unsigned(one.frame.data, 1, 3) == 0x051400 && canopen::get_unsigned(one.frame.data, 4, 2) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("Closing leaves no drive without commands until its event timer has ended, flippers' first") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(20, robot::Command{});
+  delay_answers(robot);
+  const canopen::Time begin = robot.wire.now();
+  CHECK(error_of_closing(robot).code() == HRT_OK);
+
+  // Six timers, then six watches of the heartbeat: were they ended in one go, with 10 ms for each of twelve answers,
+  // the last drive would wait for more than its timer's 0.1 s. A cycle has 10 ms, and an answer may take one.
+  std::vector<canopen::NodeId> order;
+  for (canopen::NodeId node = 1; node <= 6; ++node) {
+    canopen::Time last = begin, longest_gap{};
+    bool has_ended = false;
+    for (const candrives::LoggedFrame& one : robot.wire.log()) {
+      if (one.at < begin || has_ended) continue;
+      has_ended = ends_event_timer(one, node);
+      if (!has_ended && (one.sender != Sender::master || one.frame.id != 0x200 + node)) continue;
+      longest_gap = std::max(longest_gap, one.at - last);
+      last = one.at;
+    }
+    CAPTURE(static_cast<int>(node));
+    CHECK(has_ended);
+    CHECK(longest_gap <= std::chrono::milliseconds(35));
+  }
+  for (const candrives::LoggedFrame& one : robot.wire.log()) {
+    for (canopen::NodeId node = 1; node <= 6; ++node) {
+      if (one.at >= begin && ends_event_timer(one, node)) order.push_back(node);
+    }
+  }
+  CHECK(order == std::vector<canopen::NodeId>{3, 4, 5, 6, 1, 2});
+  CHECK(robot.all_are(PowerState::quick_stop_active));
+}
+
+TEST_CASE("Closing says which drive no longer holds its position when it has stopped") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(20, robot::Command{});
+  // as a drive whose maker answers missing commands by a fault: it fails while the watches are ended
+  bool has_failed = false;
+  robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
+    if (sender == Sender::master && frame.id == 0x606 && !std::exchange(has_failed, true))
+      robot.wire.inject({candrives::FaultKind::error, 6, canopen::kErrorPdoTimeOut});
+    return true;
+  };
+  const hrt::Error error = error_of_closing(robot);
+  CHECK(has_failed);
+  CHECK(error.code() == HRT_E_DEVICE);
+  CHECK_THAT(error.what(), Catch::StartsWith("closed, and at rest, but not held with torque: flipper rear right (node "
+                                             "6) is in the state \"fault\"") &&
+                               Catch::Contains("support the robot"));
+}
+
+TEST_CASE("Closing waits for a robot that takes longer to stop than others") {
+  // Husky from 1.2 m/s: 0.16 s of ramp at 7.5 m/s^2 and 0.36 s of its drives' lag (can-robot.md), more than 0.3 s.
+  RobotOnBus robot("husky");
+  robot.plant.speed_loop_s = robot.description.speed_loop_s;
+  robot.open();
+  const double full_mps = robot.description.drives.front().max_speed;
+  robot.run(300, drive_at(full_mps, full_mps));
+  const double begin_s = robot.seconds();
+  CHECK(error_of_closing(robot).code() == HRT_OK);
+  CHECK(robot.seconds() - begin_s >= 0.3);
+  CHECK(std::abs(robot.plant.state().track_mps[0]) <= canbus::kAtRest_mps);
+}
+
 TEST_CASE("Drives that hold the robot keep their torque while the next program takes them over") {
   enum class End { closed, killed, interface_down };
   for (const End end : {End::closed, End::killed, End::interface_down}) {

@@ -2,6 +2,8 @@
 // any other; without it the library refuses, or warns, with the drive's name and that key.
 #include <catch2/catch.hpp>
 
+#include <set>
+
 #include "hrt/error.hpp"
 #include "tests/libkenaf_real/changed_robot.hpp"
 #include "tests/libkenaf_real/robot_on_bus.hpp"
@@ -134,7 +136,51 @@ TEST_CASE("A drive with a quirk drives as any other once its device file names i
     CHECK(robot.transport.warning().empty());
     robot.transport.close();
     CHECK(robot.stands());
+    CHECK(robot.all_are(PowerState::quick_stop_active));
   }
+}
+
+TEST_CASE("A drive that takes few commands is closed without a fault, and taken over with its torque") {
+  for (const int every : {3, 4, 5}) {
+    const RobotOfDevice described("command_every = " + std::to_string(every));
+    // a command's turn may fall on any cycle of the closing
+    for (int cycles = 30; cycles < 30 + every; ++cycles) {
+      RobotOnBus robot(described.path());
+      inject(robot, FaultKind::slow_commands, 1, 6);
+      robot.open();
+      robot.run(cycles, drive_at(0.2, 0.2));
+      CAPTURE(every, cycles);
+      CHECK_NOTHROW(robot.transport.close());
+      REQUIRE(robot.all_are(PowerState::quick_stop_active));
+
+      std::set<PowerState> seen;
+      robot.wire.alter = [&](canopen::Frame&, candrives::Sender) {
+        for (std::size_t drive = 0; drive < 6; ++drive) seen.insert(robot.power(drive));
+        return true;
+      };
+      robot.open();
+      CHECK(seen == std::set{PowerState::operation_enabled, PowerState::quick_stop_active});
+    }
+  }
+}
+
+TEST_CASE("An urgent stop goes once to a drive that takes few commands, at once") {
+  const RobotOfDevice described("command_every = 3", Of::tracks);
+  RobotOnBus robot(described.path());
+  robot.open();
+  robot.run(30, drive_at(0.2, 0.2));
+  robot.wire.inject({FaultKind::error, 4, 0x2310});
+  const canopen::Time begin = robot.wire.now();
+  CHECK_THROWS_AS(robot.run(5, drive_at(0.2, 0.2)), hrt::Error);
+  // the fault shows at the next SYNC, and its answer is on the bus in the same cycle of 10 ms
+  robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(5));
+  int stops = 0;
+  for (const candrives::LoggedFrame& one : robot.wire.log()) {
+    if (one.at < begin || one.frame.id != 0x201 || one.frame.data[0] != canopen::kControlQuickStop) continue;
+    ++stops;
+    CHECK(one.at - begin <= std::chrono::milliseconds(20));
+  }
+  CHECK(stops == 1);
 }
 
 TEST_CASE("Without its key a drive with a quirk is refused or warned of, by its name and with the key") {

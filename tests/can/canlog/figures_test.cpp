@@ -96,3 +96,31 @@ TEST_CASE("The load is that of the bits there are") {
   CHECK(figures.other_frames == 1);
   CHECK_THAT(to_text(figures, 500e3), Catch::Contains("load 10.2 % (at most 11.0 %) of 500 kbit/s"));
 }
+
+TEST_CASE("A drive that takes each third command is late only without any in three cycles") {
+  canbus::RobotBus bus = candrives::easy_robot();
+  bus.drives.resize(2);
+  bus.drives[0].device.command_every = 3;
+  const auto figures_without = [&](int lost_cycle) {
+    std::string text;
+    for (int cycle = 0; cycle < 16; ++cycle) {
+      const auto add = [&](double after_ms, std::string_view frame) {
+        text += fmt::format("({:.6f}) vcan0 {}\n", 1e-3 * (10 * cycle + after_ms), frame);
+      };
+      add(0, "080#");
+      add(1, "181#270200000000");
+      add(2, "182#270200000000");
+      if (cycle % 3 == 0 && cycle != lost_cycle) add(4, "201#0F00E8030000");
+      add(5, "202#0F0018FCFFFF");
+    }
+    return figures_of(log_from(text), Network(bus));
+  };
+  // Driven from cycle 0, whose first command comes after its SYNC, to that of cycle 15: 14 whole ones, from SYNC 1 on.
+  const Figures all = figures_without(-1);
+  CHECK(all.driven_cycles == 14);
+  CHECK(all.late_commands == 0);
+  // Node 1 has a command in cycle 3 and the next in 9: late are 6, 7 and 8.
+  const Figures lost = figures_without(6);
+  CHECK(lost.driven_cycles == 14);
+  CHECK(lost.late_commands == 3);
+}
