@@ -17,6 +17,8 @@ void add_pictures(pybind11::module_& module);
 // Raises the module's exception for a return value other than HRT_OK, with hrt_last_error() as its text. Must run on
 // the thread on which the call failed.
 void raise_unless_ok(int result);
+// The same with another text.
+[[noreturn]] void raise(int result, const char* text);
 
 // Calls an hrt_ function that does not block, with the GIL held.
 template <typename Function, typename... Arguments>

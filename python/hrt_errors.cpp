@@ -63,11 +63,14 @@ void add_errors(py::module_& module) {
 }
 
 void raise_unless_ok(int result) {
-  if (result == HRT_OK) return;
+  if (result != HRT_OK) raise(result, hrt_last_error());
+}
+
+void raise(int result, const char* text) {
   std::string name = "Error";
   for (const ErrorClass& error : kErrors)
     if (error.code == result) name = class_name(error);
-  PyErr_SetString(this_module().attr(name.c_str()).ptr(), hrt_last_error());
+  PyErr_SetString(this_module().attr(name.c_str()).ptr(), text);
   throw py::error_already_set();
 }
 

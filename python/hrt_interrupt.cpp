@@ -74,6 +74,12 @@ StopOnInterrupt::~StopOnInterrupt() {
   blocks = false;
 }
 
+void handle_signals() {
+  if (PyErr_CheckSignals() == 0) return;
+  if (PyErr_ExceptionMatches(PyExc_KeyboardInterrupt) != 0) hrt_stop();
+  throw pybind11::error_already_set();
+}
+
 void sleep_interruptibly(double seconds) {
   if (!(seconds > kPart_s && seconds <= kLongest_s)) {
     call_blocking(hrt_sleep, seconds);

@@ -22,16 +22,22 @@ class StopOnInterrupt {
   bool active_ = false;
 };
 
-// Calls an hrt_ function that blocks, without the GIL. Raises what a signal handler raised meanwhile, or else what
-// raise_unless_ok() does.
+// Runs Python's handlers of the signals that have come, and throws what they raise. A KeyboardInterrupt leaves no robot
+// that moves: also one that came between two calls, where no StopOnInterrupt lived.
+void handle_signals();
+
+// Calls an hrt_ function that blocks, without the GIL, and returns its result; signals wait for handle_signals().
+template <typename Function, typename... Arguments>
+int interruptible(Function function, Arguments... arguments) {
+  const StopOnInterrupt stop;
+  return without_gil(function, arguments...);
+}
+
+// Raises what a signal handler raised meanwhile, or else what raise_unless_ok() does.
 template <typename Function, typename... Arguments>
 void call_blocking(Function function, Arguments... arguments) {
-  int result = HRT_OK;
-  {
-    const StopOnInterrupt stop;
-    result = without_gil(function, arguments...);
-  }
-  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  const int result = interruptible(function, arguments...);
+  handle_signals();
   raise_unless_ok(result);
 }
 

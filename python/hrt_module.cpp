@@ -16,15 +16,20 @@ constexpr std::size_t kMostWarning = 4096;
 
 struct Session {};  // the robot of this process, open
 
-void kenaf_init(const std::optional<hrt_config>& config) {
-  if (config)
-    call_blocking(hrt_kenaf_init_with, &*config);
-  else
-    call_blocking(hrt_kenaf_init);
-}
-
 void close_robot() {
   raise_unless_ok(without_gil(hrt_close));
+}
+
+// A signal does not end an opening. Whoever gets its exception gets no robot, which nobody would close.
+void kenaf_init(const std::optional<hrt_config>& config) {
+  const int result = config ? interruptible(hrt_kenaf_init_with, &*config) : interruptible(hrt_kenaf_init);
+  try {
+    handle_signals();
+  } catch (const py::error_already_set&) {
+    if (result == HRT_OK) (void)without_gil(hrt_close);
+    throw;
+  }
+  raise_unless_ok(result);
 }
 
 hrt_state get_state() {

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -134,6 +135,30 @@ class Driving(unittest.TestCase):
             hrt.sleep(0.5)
             np.testing.assert_array_equal(hrt.get_state().commanded_track_mmps, [0, 0])
 
+    def test_control_c_stops_a_wait_for_a_picture_of_a_silent_camera(self) -> None:
+        hrt.close()
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            config = hrt.Config(relay=self.config.relay, camera_server=f"127.0.0.1:{silent.getsockname()[1]}")
+            hrt.kenaf_init(config)
+            hrt.set_tracks(150, 150)
+            before = hrt.get_state().cycle
+
+            def interrupt() -> None:
+                while hrt.get_state().cycle < before + 5:
+                    pass
+                os.kill(os.getpid(), signal.SIGINT)
+
+            thread = threading.Thread(target=interrupt)
+            thread.start()
+            with self.assertRaises(KeyboardInterrupt):
+                hrt.get_picture(timeout_s=60)
+            thread.join()
+            np.testing.assert_array_equal(hrt.get_state().commanded_track_mmps, [0, 0])
+            with self.assertRaisesRegex(hrt.TimeoutError, "no first picture of the first camera within 0.25 s"):
+                hrt.get_picture(timeout_s=0.25)
+            with self.assertRaises(hrt.ArgumentError):
+                hrt.get_picture(timeout_s=61)
+
     def test_other_threads_run_while_one_blocks(self) -> None:
         thread = threading.Thread(target=hrt.go_forward, args=(100000,))
         thread.start()
@@ -145,11 +170,60 @@ class Driving(unittest.TestCase):
         thread.join()
 
 
+class InterruptsOnFirst:
+    """Passes datagrams between one program and a relay; sends this process a SIGINT before the first."""
+
+    def __init__(self, relay: str) -> None:
+        host, port = relay.rsplit(":", 1)
+        self.relay = (host, int(port))
+        self.has_interrupted = False
+
+    def __enter__(self) -> "InterruptsOnFirst":
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", 0))
+        self.address = f"127.0.0.1:{self.socket.getsockname()[1]}"
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+        return self
+
+    def run(self) -> None:
+        program = None
+        while True:
+            data, sender = self.socket.recvfrom(65536)
+            if not data:
+                return
+            if sender == self.relay:
+                if program is not None:
+                    self.socket.sendto(data, program)
+                continue
+            program = sender
+            if not self.has_interrupted:
+                self.has_interrupted = True
+                os.kill(os.getpid(), signal.SIGINT)
+            self.socket.sendto(data, self.relay)
+
+    def __exit__(self, *raised: object) -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
+            end.sendto(b"", self.socket.getsockname())
+        self.thread.join()
+        self.socket.close()
+
+
 class Session(unittest.TestCase):
     def test_closes_the_robot_whatever_ends_the_block(self) -> None:
         with Relay() as relay:
             with self.assertRaises(ZeroDivisionError), hrt.Session(hrt.Config(relay=relay.address)):
                 raise ZeroDivisionError
+            with self.assertRaises(hrt.NotInitialisedError):
+                hrt.get_state()
+            with hrt.Session(hrt.Config(relay=relay.address)):
+                self.assertGreaterEqual(hrt.time(), 0)
+
+    def test_an_opening_that_control_c_has_met_leaves_no_robot_open(self) -> None:
+        with Relay() as relay, InterruptsOnFirst(relay.address) as between:
+            with self.assertRaises(KeyboardInterrupt), hrt.Session(hrt.Config(relay=between.address)):
+                self.fail("the block was entered")
+            self.assertTrue(between.has_interrupted)
             with self.assertRaises(hrt.NotInitialisedError):
                 hrt.get_state()
             with hrt.Session(hrt.Config(relay=relay.address)):
