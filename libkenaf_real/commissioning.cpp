@@ -169,6 +169,25 @@ std::optional<double> set_up_drive(Master& master, const RobotBus& bus, std::siz
   return rated_a;
 }
 
+// Returns the unit that is then in force, in thousandths of a degree.
+std::int64_t coarser_slopes(Master& master, const NamedNode& node) {
+  const canopen::SdoWrite write = canbus::write_of_slope_resolution().what;
+  const auto fail = [&](const std::string& why) {
+    throw Error(HRT_E_DEVICE,
+                fmt::format("{}: its slopes are in thousandths of a degree (object 0x6000 = 1), so that those beyond "
+                            "32.767 degrees would be wrong, and {}; set it to 10 with its maker's tool",
+                            to_string(node), why));
+  };
+  try {
+    master.write(node, write);
+  } catch (const SdoRefused& refused) {
+    fail(fmt::format("it does not take hundredths ({})", describe(refused.abort)));
+  }
+  const std::int64_t in_force = master.read(node, {write.object, write.type}, write.purpose);
+  if (in_force == canbus::kTooFineSlope) fail("it keeps that though hundredths were written");
+  return in_force;
+}
+
 double set_up_inclinometer(Master& master, const RobotBus& bus) {
   const NamedNode node{bus.inclinometer->node, "inclinometer"};
   double unit_rad = 0;
@@ -176,6 +195,7 @@ double set_up_inclinometer(Master& master, const RobotBus& bus) {
     if (object == object::device_type.object)
       return check_profile(node, value, canopen::kProfileInclinometer, "inclinometer");
     if (object != object::slope_resolution.object) return;
+    if (value == canbus::kTooFineSlope) value = coarser_slopes(master, node);
     if (value != 1 && value != 10 && value != 100 && value != 1000)
       throw Error(HRT_E_DEVICE, fmt::format("{}: object 0x6000 (resolution) is {}, which CiA 410 does not define",
                                             to_string(node), value));

@@ -206,6 +206,10 @@ std::vector<SdoStep> set_up_of_inclinometer(const RobotBus& bus) {
   return steps;
 }
 
+SdoStep write_of_slope_resolution() {
+  return write_step(object::slope_resolution, kSlopeInHundredths, "slopes in hundredths of a degree");
+}
+
 std::vector<SdoStep> homing_of_drive(const DriveOnBus& drive) {
   const Homing& homing = *drive.homing;
   const std::int64_t speed = std::abs(std::int64_t{velocity_to_drive(drive.units, homing.speed_radps)});

@@ -26,6 +26,10 @@ struct SdoStep {
 // From pre-operational to operational: identity, parameters, PDOs, heartbeats.
 std::vector<SdoStep> set_up_of_drive(const RobotBus& bus, std::size_t drive, double period_s);
 std::vector<SdoStep> set_up_of_inclinometer(const RobotBus& bus);
+// For one that counts in thousandths of a degree (0x6000 = 1): its 16-bit slopes would end at 32.767 degrees, and what
+// lies beyond would be saturated or wrapped. In hundredths they reach 327.67.
+SdoStep write_of_slope_resolution();
+inline constexpr std::int64_t kTooFineSlope = 1, kSlopeInHundredths = 10;  // 0x6000: thousandths of a degree
 
 // For a flipper with homing, before its mode becomes homing.
 std::vector<SdoStep> homing_of_drive(const DriveOnBus& drive);
