@@ -144,7 +144,7 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
       joined(warning_of_gauge(s.robot, config.track_gauge_mm), warning_of_watches(s.robot, facts.watches));
   s.warnings = warnings_with(s.warning_of_start, s.robot);
   s.measured.emplace(s.robot, facts, s.period_s);
-  s.targets.emplace(s.robot, s.cycle.image());
+  s.targets.emplace(s.robot, s.cycle.sent());
   s.lost = false;
   for (double t_s = 0; t_s < kStand_s; t_s += s.period_s) {
     if (!measure()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");

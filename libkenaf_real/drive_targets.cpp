@@ -21,12 +21,12 @@ void PositionRamp::step(double target, double max_speed, double acceleration, do
   position += speed * dt_s;
 }
 
-DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image)
+DriveTargets::DriveTargets(const canbus::RobotBus& bus, const DriveOrders& held)
     : bus_(bus), orders_(bus.drives.size()), track_mps_(bus.drives.size()) {
   for (std::size_t i = 0; i < bus.drives.size(); ++i) {
     const DriveOnBus& drive = bus.drives[i];
     if (!drive.is_flipper()) continue;
-    hold_rad_[*drive.flipper] = position_from_drive(drive.units, image.drive(i).position);
+    hold_rad_[*drive.flipper] = position_from_drive(drive.units, held[i].target);
     ramps_[*drive.flipper].position = hold_rad_[*drive.flipper];
   }
 }

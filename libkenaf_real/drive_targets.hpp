@@ -20,8 +20,9 @@ struct PositionRamp {
 
 class DriveTargets {
  public:
-  // The flippers stay where they are until they are commanded.
-  DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
+  // Until they are commanded the flippers stay where `held` has told them to, which is not where they are measured if
+  // they carry a load.
+  DriveTargets(const canbus::RobotBus& bus, const DriveOrders& held);
 
   // Commands to flippers that the robot has not are ignored. A speed out of range is limited to the description's
   // maximum; a flipper angle is taken to the same direction within the limits or, if there is none, to the nearer

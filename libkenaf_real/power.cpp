@@ -47,8 +47,17 @@ const canbus::Device& device_of(const BusCycle& cycle, std::size_t i) {
   return cycle.bus().drives[i].device;
 }
 
-std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
+std::int32_t target_here(const BusCycle& cycle, std::size_t i) {
   return is_position(cycle.bus().drives[i].mode) ? cycle.image().drive(i).position : 0;
+}
+
+// The target of a drive that is to stay: where it is, until it has been seen enabled, and from then on what it was told
+// last. A flipper under load lies below its target; targets that follow what is measured would let it down, each cycle
+// by as much.
+std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
+  const DriveOrder& last = cycle.sent()[i];
+  const bool was_enabled = (last.controlword & canopen::kControlEnable) == canopen::kControlEnable;
+  return was_enabled && state_of(cycle, i) == PowerState::operation_enabled ? last.target : target_here(cycle, i);
 }
 
 std::string not_enabled(const BusCycle& cycle, std::size_t i) {
@@ -243,6 +252,8 @@ void home(BusCycle& cycle) {
     patience_s = std::max(patience_s, cycle.bus().drives[i].homing->patience_s);
   }
   if (patience_s == 0) return;
+  // Homing moves the drive and gives its position another zero: it stays where it is then.
+  const auto hold_or_home = [&](std::size_t i) { return homes(i) ? target_here(cycle, i) : hold_target(cycle, i); };
   const auto status = [&](std::size_t i) { return cycle.image().drive(i).statusword; };
   const Time believed_from = cycle.master().now() + kHomingBegins;
   const auto is_believed = [&] { return cycle.master().now() >= believed_from; };
@@ -254,7 +265,7 @@ void home(BusCycle& cycle) {
           throw Error(HRT_E_DEVICE, fmt::format("{}: homing failed (statusword {:#06x})",
                                                 to_string(drive_node(cycle.bus(), i)), status(i)));
         const unsigned start = homes(i) ? canopen::kControlNewSetPoint : 0u;
-        return DriveOrder{static_cast<std::uint16_t>(canopen::kControlEnable | start), hold_target(cycle, i)};
+        return DriveOrder{static_cast<std::uint16_t>(canopen::kControlEnable | start), hold_or_home(i)};
       },
       [&](std::size_t i) {
         constexpr unsigned kDone = canopen::kStatusHomingAttained | canopen::kStatusTargetReached;
@@ -274,7 +285,7 @@ void home(BusCycle& cycle) {
   run_until(
       cycle, kModeChange,
       [&](std::size_t i) {
-        return DriveOrder{canopen::kControlEnable, hold_target(cycle, i)};
+        return DriveOrder{canopen::kControlEnable, hold_or_home(i)};
       },
       [&](std::size_t i) {
         if (i == 0) ++cycles_low;
@@ -304,7 +315,7 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
 DriveOrders orders_to_stop(const BusCycle& cycle) {
   DriveOrders orders(cycle.bus().drives.size());
   for (std::size_t i = 0; i < cycle.bus().drives.size(); ++i)
-    orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
+    orders[i] = {canopen::kControlQuickStop, target_here(cycle, i)};
   return orders;
 }
 

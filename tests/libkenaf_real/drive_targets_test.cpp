@@ -28,12 +28,20 @@ ProcessImage image_at(const canbus::RobotBus& bus, std::int32_t counts) {
   return image;
 }
 
+// As the opening leaves it: all were told to stay where they are.
+DriveOrders held_at(const canbus::RobotBus& bus, const ProcessImage& image) {
+  DriveOrders held(bus.drives.size());
+  for (std::size_t i = 0; i < held.size(); ++i)
+    held[i] = {kControlEnable, bus.drives[i].is_flipper() ? image.drive(i).position : 0};
+  return held;
+}
+
 }  // namespace
 
 TEST_CASE("Without a command flippers keep where they are, and tracks stand") {
   const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
   const ProcessImage image = image_at(bus, 12345);
-  DriveTargets targets(bus, image);
+  DriveTargets targets(bus, held_at(bus, image));
   for (int k = 0; k < 10; ++k) {
     const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
     for (std::size_t i = 0; i < bus.drives.size(); ++i) {
@@ -48,7 +56,7 @@ TEST_CASE("A cyclic track speed is ramped by the description's acceleration, a p
   command.track_speed_mps = {0.2, -0.2};
   const canbus::RobotBus cyclic = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
   const ProcessImage image = image_at(cyclic, 0);
-  DriveTargets ramped(cyclic, image);
+  DriveTargets ramped(cyclic, held_at(cyclic, image));
   // 5 m/s^2 in 10 ms: 0.05 m/s a cycle; the right drive counts backwards, so that its -0.05 is positive
   const double units = cyclic.drives[0].units.velocity_per_unit;
   DriveOrders orders = ramped.step(command, image, 0.01);
@@ -58,7 +66,7 @@ TEST_CASE("A cyclic track speed is ramped by the description's acceleration, a p
   CHECK(orders[0].target == std::lround(0.2 * units));
 
   const canbus::RobotBus profile = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
-  DriveTargets direct(profile, image);
+  DriveTargets direct(profile, held_at(profile, image));
   CHECK(direct.step(command, image, 0.01)[0].target == std::lround(0.2 * units));
 }
 
@@ -67,7 +75,7 @@ TEST_CASE(
     "does") {
   const canbus::RobotBus bus = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
   const ProcessImage image = image_at(bus, 0);
-  DriveTargets targets(bus, image);
+  DriveTargets targets(bus, held_at(bus, image));
   robot::Command command;
   command.track_speed_mps = {99, -99};
   command.flipper[0] = {robot::JointMode::angle, 6};
@@ -83,7 +91,7 @@ TEST_CASE("A flipper that stands outside of its limits stays there until it is t
     const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, mode);
     const std::int32_t outside = position_to_drive(bus.drives[2].units, 4);  // its range ends at pi
     const ProcessImage image = image_at(bus, outside);
-    DriveTargets targets(bus, image);
+    DriveTargets targets(bus, held_at(bus, image));
     for (int k = 0; k < 10; ++k) {
       const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
       for (std::size_t i = robot::kTrackCount; i < bus.drives.size(); ++i) {

@@ -41,6 +41,7 @@ class LeaningPlant final : public candrives::Plant {
       followed.track_mps[i] = state_.track_mps[i] + share * (command.track_mps[i] - state_.track_mps[i]);
     tracks_.advance(step, followed);
     state_ = tracks_.state();
+    for (double& angle_rad : state_.flipper_rad) angle_rad -= flipper_sag_rad;
     state_.roll_rad = roll_rad;
     state_.pitch_rad = pitch_rad;
     state_.yaw_rate_radps = yaw_rate_radps;
@@ -48,6 +49,7 @@ class LeaningPlant final : public candrives::Plant {
   const candrives::PlantState& state() const override { return state_; }
   double roll_rad = 0, pitch_rad = 0, yaw_rate_radps = 0;
   double speed_loop_s = 0;
+  double flipper_sag_rad = 0;  // that flippers lie below what their drives demand, as under a load
 
  private:
   candrives::IdealPlant tracks_;
