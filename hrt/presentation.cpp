@@ -38,8 +38,12 @@ hrt_state state_from(const Snapshot& snapshot) {
                    flag(snapshot.stopped_by_silence || measured.stopped_by_silence, HRT_STOPPED_BY_SILENCE) |
                    flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
                    flag(!snapshot.warning.empty(), HRT_DEGRADED);
-  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-    state.flippers_commanded |= flag(snapshot.commanded.flipper[i].mode == robot::JointMode::angle, 1u << i);
+  // A flipper that the robot has not ignores its commands.
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const bool is_there = !std::isnan(measured.flipper_rad[i]);  // robot::kNoFlipper
+    state.flippers_commanded |=
+        flag(is_there && snapshot.commanded.flipper[i].mode == robot::JointMode::angle, 1u << i);
+  }
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;
 

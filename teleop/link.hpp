@@ -123,7 +123,7 @@ struct Status {
   std::array<double, kTrackCount> commanded_track_mmps;
   std::array<double, kTrackCount> track_a;
   std::array<double, kFlipperCount> flipper_deg;  // measured
-  std::uint8_t flippers_commanded;                // bit i: flipper i was ever commanded
+  std::uint8_t flippers_commanded;                // bit i: the robot has flipper i, and it was ever commanded
   std::array<double, kFlipperCount> commanded_flipper_deg;
   std::array<double, kFlipperCount> flipper_a;
   std::uint32_t flipper_order;  // the newest order carried out

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFirstRepeat_s = 0.4, kRepeat_s = 0.04;  // a keyboard's
 constexpr double kNotices_s = 1.0, kLetsGo_s = 0.5;       // a person's
-constexpr double kPatience_s = 15;                        // without a status from the robot
+constexpr double kPatience_s = 15;                        // without a status from the robot, or without a robot
 
 constexpr std::array kNames{"time_s",          "x_mm",     "y_mm",    "z_mm",
                             "nose_up_deg",     "roll_deg", "yaw_deg", "track_mmps",
@@ -203,6 +203,7 @@ Script read_script(std::string_view text) {
 void Player::begin_step(double now_s) {
   step_began_s_ = now_s;
   step_began_robot_s_.reset();
+  no_robot_since_s_.reset();
   next_press_s_.reset();
   halt_seen_s_.reset();
 }
@@ -232,6 +233,12 @@ Player::Turn Player::turn(double now_s, const Status* newest, double silent_s, c
   }
   while (step_ < script_.size()) {
     const Step& step = script_[step_];
+    // What was pressed is acted on after this turn; a condition asked in it would still see what was before.
+    const auto end_step = [&] {
+      ++step_;
+      begin_step(now_s);
+      turn.finished = step_ == script_.size();
+    };
     const auto fail = [&](const std::string& why) {
       turn.failed = fmt::format("line {}: {}", step.line, why);
       turn.finished = true;
@@ -241,12 +248,27 @@ Player::Turn Player::turn(double now_s, const Status* newest, double silent_s, c
     } else if (step.kind == Step::Kind::press) {
       if (now_s < script_began_s_ + step.seconds) return turn;
       for (int i = 0; i < step.times; ++i) turn.pressed.push_back(*action_of_key(step.text));
+      end_step();
+      return turn;
     } else if (step.until) {
-      if (newest != nullptr && !step_began_robot_s_) step_began_robot_s_ = newest->robot_time_s;
+      // A robot that was opened anew begins its time anew.
+      if (newest != nullptr) {
+        step_began_robot_s_ = std::min(step_began_robot_s_.value_or(newest->robot_time_s), newest->robot_time_s);
+      }
+      const bool has_robot = newest == nullptr || newest->mode != Mode::no_robot;
+      if (has_robot) no_robot_since_s_.reset();
+      if (!has_robot && !no_robot_since_s_) no_robot_since_s_ = now_s;
       const bool is_seen = newest != nullptr && holds(*step.until, *newest, desk);
       if (!is_seen) {
         if (newest != nullptr && newest->robot_time_s - *step_began_robot_s_ > step.within_s) {
           fail(fmt::format("'{}' was not seen within {} s of the robot's time", words_of(*step.until), step.within_s));
+          return turn;
+        }
+        // Its time stands meanwhile, and would never come to an end.
+        const double without_s = std::max(step.within_s, kPatience_s);
+        if (no_robot_since_s_ && now_s - *no_robot_since_s_ > without_s) {
+          fail(fmt::format("'{}' was not seen, and there was no robot for {} s: {}", words_of(*step.until), without_s,
+                           view(newest->message)));
           return turn;
         }
         if ((newest == nullptr ? now_s - step_began_s_ : silent_s) > kPatience_s) {
@@ -256,15 +278,20 @@ Player::Turn Player::turn(double now_s, const Status* newest, double silent_s, c
         if (step.kind == Step::Kind::hold) press_held(*action_of_key(step.text), now_s, newest, turn);
         return turn;
       }
-      if (step.kind == Step::Kind::hold) turn.pressed.push_back(Action::stand);  // release
+      if (step.kind == Step::Kind::hold) {
+        turn.pressed.push_back(Action::stand);  // release
+        end_step();
+        return turn;
+      }
     } else if (now_s < step_began_s_ + step.seconds) {
       if (step.kind == Step::Kind::hold) press_held(*action_of_key(step.text), now_s, newest, turn);
       return turn;
     } else if (step.kind == Step::Kind::hold) {
       turn.pressed.push_back(Action::stand);
+      end_step();
+      return turn;
     }
-    ++step_;
-    begin_step(now_s);
+    end_step();
   }
   turn.finished = true;
   return turn;

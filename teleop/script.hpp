@@ -12,7 +12,8 @@
 //
 // He holds a key as a keyboard does: pressed, then repeated after 0.4 s, 25 times a second. If the console shows that
 // the robot halted and waits, he notices after a second, releases for half a second, and continues. His own seconds are
-// wall-clock time; `within` counts robot time, so that a slow simulation does not make him give up.
+// wall-clock time; `within` counts robot time, so that a slow simulation does not make him give up, and wall-clock
+// time, 15 s at least, while there is no robot that has one.
 #pragma once
 
 #include <limits>
@@ -72,7 +73,8 @@ class Player {
   std::size_t step_ = 0;
   double script_began_s_ = -1, step_began_s_ = 0;
   std::optional<double> step_began_robot_s_;
-  std::optional<double> next_press_s_;  // of the held key
+  std::optional<double> no_robot_since_s_;  // in this step, wall clock
+  std::optional<double> next_press_s_;      // of the held key
   std::optional<double> halt_seen_s_;
 };
 

@@ -328,7 +328,7 @@ typedef struct hrt_state {
   uint32_t size;               /* sizeof(hrt_state) of the program, so that the struct can grow: see hrt_state_init() */
   uint32_t valid;              /* HRT_HAS_... */
   uint32_t activity;           /* HRT_MOTION_ACTIVE ... */
-  uint32_t flippers_commanded; /* bit i: commanded_flipper_deg[i] was commanded since init */
+  uint32_t flippers_commanded; /* bit i: commanded_flipper_deg[i] was commanded since init, and the robot has it */
   uint64_t cycle;              /* number of the cycle, 1 = the first one after init */
   double time_s;               /* robot time of the measurement */
 

@@ -138,6 +138,7 @@ TEST_CASE("Of a robot with front flippers, the rear ones are commanded in vain, 
   REQUIRE(hrt_get_state(&state) == HRT_OK);
   CHECK((state.valid & HRT_HAS_FLIPPERS) != 0);
   CHECK(state.flipper_deg[HRT_FRONT_RIGHT] == Approx(30).margin(0.5));
+  CHECK(state.flippers_commanded == (1u << HRT_FRONT_LEFT | 1u << HRT_FRONT_RIGHT));
   CHECK(state.flipper_deg[HRT_REAR_LEFT] == 0);
   CHECK(state.flipper_deg[HRT_REAR_RIGHT] == 0);
   CHECK(hrt_stop() == HRT_OK);

@@ -166,3 +166,57 @@ TEST_CASE("After a halt he notices, lets go, and presses again") {
   }
   CHECK(pressed_again_s == Approx(2.4).margin(0.05));  // a second to notice, then until the robot is ready
 }
+
+TEST_CASE("A condition after a press is asked once the press has been acted on") {
+  Desk desk;
+  Player player(read_script("press 3\nwait until flipper_off_deg < 5 within 5\nsay there\n"));
+  Status status = status_at(1);
+  status.fields = kHasFlippers;  // all at 0, as ordered so far: nothing
+  const Player::Turn pressed = player.turn(0, &status, 0, desk);
+  CHECK(pressed.pressed == std::vector{Action::posture_3});
+  CHECK_FALSE(pressed.finished);
+  for (const Action action : pressed.pressed) desk.act(action, 0, &status);
+  CHECK_FALSE(player.turn(0.01, &status, 0, desk).finished);  // the order is on its way
+  status.flipper_order = 1;
+  status.flippers_commanded = 0b0011;  // of a robot with front flippers
+  status.commanded_flipper_deg = {60, 60, -30, -30};
+  CHECK_FALSE(player.turn(0.02, &status, 0, desk).finished);
+  status.flipper_deg = {58, 57, 0, 0};
+  const Player::Turn done = player.turn(0.03, &status, 0, desk);
+  CHECK(done.finished);
+  CHECK(done.said == std::vector<std::string>{"there"});
+}
+
+TEST_CASE("Presses one after another take a turn each, and the last one ends the script with it") {
+  const Desk desk;
+  Player player(read_script("press + 2\nhold w for 0\npress -\n"));
+  CHECK(player.turn(0, nullptr, 0, desk).pressed == std::vector{Action::faster, Action::faster});
+  CHECK(player.turn(0.01, nullptr, 0, desk).pressed == std::vector{Action::stand});
+  const Player::Turn last = player.turn(0.02, nullptr, 0, desk);
+  CHECK(last.pressed == std::vector{Action::slower});
+  CHECK(last.finished);
+}
+
+TEST_CASE("Where there is no robot its time stands, and the wall's ends the wait") {
+  const Desk desk;
+  Status none = status_at(0, Mode::no_robot);
+  none.message = text_of("HRT_E_LINK: nobody is there");
+  for (const auto& [within_s, limit_s] : {std::pair{"20", 20.0}, {"5", 15.0}}) {
+    Player player(read_script(std::string("wait until mode is ready within ") + within_s));
+    CHECK_FALSE(player.turn(0, &none, 0, desk).finished);
+    CHECK_FALSE(player.turn(limit_s, &none, 0, desk).finished);
+    const Player::Turn turn = player.turn(limit_s + 0.1, &none, 0, desk);
+    CHECK(turn.finished);
+    CHECK(turn.failed == "line 1: 'mode is ready' was not seen, and there was no robot for " +
+                             std::to_string(static_cast<int>(limit_s)) + " s: HRT_E_LINK: nobody is there");
+  }
+  // One that comes has its own time, from then on, and so has one that is opened anew.
+  Player player(read_script("wait until mode is ready within 5"));
+  player.turn(0, &none, 0, desk);
+  const Status halted = status_at(4.9, Mode::halted), anew = status_at(0.1, Mode::halted);
+  CHECK_FALSE(player.turn(14, &halted, 0, desk).finished);
+  CHECK_FALSE(player.turn(40, &anew, 0, desk).finished);
+  const Status late = status_at(5.2, Mode::halted);
+  CHECK(player.turn(41, &late, 0, desk).failed ==
+        "line 1: 'mode is ready' was not seen within 5 s of the robot's time");
+}
