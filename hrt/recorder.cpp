@@ -82,7 +82,7 @@ RecordRow record_row(const robot::State& state, const robot::Command& command, d
   if (has(robot::kHasFlippers)) put<flipper_angle>(row, state.flipper_rad);
   if (has(robot::kHasCurrents)) {
     put<track_current>(row, state.track_a);
-    put<flipper_current>(row, state.flipper_a);
+    if ((state.fields & robot::kHeldFlipperCurrents) == 0) put<flipper_current>(row, state.flipper_a);
   }
   if (has(robot::kHasBattery)) put<battery_voltage>(row, state.battery_v);
   if (has(robot::kHasGroundTruth)) {

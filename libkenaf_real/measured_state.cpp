@@ -28,7 +28,7 @@ std::int32_t difference(std::int32_t now, std::int32_t before) {
 }  // namespace
 
 MeasuredState::MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s)
-    : bus_(bus), facts_(facts), period_s_(period_s), travels_(bus.drives.size()) {}
+    : bus_(bus), facts_(facts), period_s_(period_s), travels_(bus.drives.size()), had_(bus.drives.size()) {}
 
 robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   robot::State state{};
@@ -62,7 +62,40 @@ robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   const std::uint32_t beats = last_beat_ == 0 ? 1 : beat.number - last_beat_;
   add_posture(cycle, beats * period_s_, state);
   last_beat_ = beat.number;
+  mark_held(cycle.image(), state);
   return state;
+}
+
+// By arrival: not each PDO comes in each cycle, and one may be lost.
+void MeasuredState::mark_held(const ProcessImage& image, robot::State& state) {
+  const auto has_come = [](std::optional<canopen::Time>& had, const std::optional<canopen::Time>& at) {
+    return std::exchange(had, at) != at;
+  };
+  bool tracks = true, flippers = true, track_currents = true, flipper_currents = true;
+  for (std::size_t i = 0; i < bus_.drives.size(); ++i) {
+    const DriveInput& drive = image.drive(i);
+    const bool has_state = has_come(had_[i].state, drive.state_at),
+               has_effort = has_come(had_[i].effort, drive.effort_at);
+    if (bus_.drives[i].is_flipper()) {
+      flippers = flippers && has_state;
+      flipper_currents = flipper_currents && has_effort;
+    } else {
+      tracks = tracks && has_state;
+      track_currents = track_currents && has_effort;
+    }
+  }
+  const bool battery = has_come(had_battery_, image.battery_at());
+  // roll and pitch by the one, yaw by the other
+  const bool slope = has_come(had_slope_, image.slope().at), gyro = has_come(had_gyro_, image.gyro().at);
+  const auto mark = [&](robot::StateField field, bool is_new) {
+    if ((state.fields & field) != 0 && !is_new) state.fields |= robot::held(field);
+  };
+  mark(robot::kHasEncoders, tracks);
+  mark(robot::kHasFlippers, flippers);
+  mark(robot::kHasCurrents, track_currents);
+  mark(robot::kHasBattery, battery);
+  mark(robot::kHasPosture, slope || gyro);
+  if ((state.fields & robot::kHasCurrents) != 0 && !flipper_currents) state.fields |= robot::kHeldFlipperCurrents;
 }
 
 // Several drives of a side: the mean of their travels and of their speeds, as ros2_controllers' diff_drive_controller

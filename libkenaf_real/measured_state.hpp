@@ -17,7 +17,8 @@ class MeasuredState {
  public:
   MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s);
 
-  // Updates for one beat, without allocating. No posture (kHasPosture) while inclinometer or gyro are silent or absent;
+  // Updates for one beat, without allocating. Values of which nothing has come since the beat before are marked as held
+  // (robot::held). No posture (kHasPosture) while inclinometer or gyro are silent or absent;
   // silence() names the one that is silent. After a short silence the heading catches up with the first rate measured
   // after it.
   robot::State update(const BusCycle& cycle, const Beat& beat);
@@ -27,6 +28,7 @@ class MeasuredState {
  private:
   void add_to_side(std::size_t drive, const DriveInput& input, robot::State& state);
   void add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state);
+  void mark_held(const ProcessImage& image, robot::State& state);
 
   const canbus::RobotBus& bus_;
   const NodeFacts facts_;
@@ -37,6 +39,12 @@ class MeasuredState {
     std::int64_t counts = 0;  // since the first beat
   };
   std::vector<Travel> travels_;  // of each drive; not used for flippers
+  // Times of arrival of what the beat before has had.
+  struct Arrivals {
+    std::optional<canopen::Time> state, effort;
+  };
+  std::vector<Arrivals> had_;  // of each drive
+  std::optional<canopen::Time> had_battery_, had_slope_, had_gyro_;
   Heading heading_;
   double unseen_s_ = 0;  // time without inclinometer or gyro that the heading does not cover yet
   Silence silence_ = Silence::none;

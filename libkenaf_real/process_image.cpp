@@ -85,8 +85,10 @@ void ProcessImage::on_value(std::size_t i, const canopen::MappedObject& mapped, 
     on_velocity(i, value);
   else if (mapped.object == object::current_actual.object)
     drive.current_permil = static_cast<std::int16_t>(value);
-  else if (mapped.object == object::dc_link_voltage.object)
+  else if (mapped.object == object::dc_link_voltage.object) {
     battery_v_ = 1e-3 * static_cast<double>(value);
+    battery_at_ = at;
+  }
 }
 
 void ProcessImage::on_position(std::size_t i, std::int64_t raw, Time at) {

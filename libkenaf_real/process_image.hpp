@@ -47,6 +47,7 @@ class ProcessImage {
   const SlopeInput& slope() const { return slope_; }
   const GyroInput& gyro() const { return gyro_; }
   std::optional<double> battery_v() const { return battery_v_; }
+  std::optional<canopen::Time> battery_at() const { return battery_at_; }
   std::optional<canopen::Time> sync_at() const { return sync_at_; }
   // True if everything due with each SYNC has come since the newest one.
   bool is_complete() const;
@@ -74,7 +75,7 @@ class ProcessImage {
   SlopeInput slope_;
   GyroInput gyro_;
   std::optional<double> battery_v_;
-  std::optional<canopen::Time> sync_at_;
+  std::optional<canopen::Time> battery_at_, sync_at_;
 };
 
 }  // namespace kenaf::real

@@ -35,6 +35,9 @@ constexpr std::uint32_t held(std::uint32_t fields) {
   return fields << kHeldShift;
 }
 
+// Of kHasCurrents, flipper_a alone: drives of flippers may report theirs less often than those of tracks.
+inline constexpr std::uint32_t kHeldFlipperCurrents = 1u << 31;
+
 // Measured since the State before, not only held.
 constexpr bool is_new(std::uint32_t fields, StateField field) {
   return (fields & field) != 0 && (fields & held(field)) == 0;
@@ -43,7 +46,7 @@ constexpr bool is_new(std::uint32_t fields, StateField field) {
 struct State {
   std::uint32_t frame;          // from 1, one more for each cycle of a session: a gap is a lost State
   std::uint32_t late_commands;  // commands of this session that arrived after the frame they were meant for
-  std::uint32_t fields;         // StateField bits, and held() ones
+  std::uint32_t fields;         // StateField bits, held() ones, and kHeldFlipperCurrents
   bool stopped_by_silence;      // the robot was stopped because no command came in time
   double robot_time_s;
   std::array<double, 3> posture_rad;        // roll, pitch, yaw

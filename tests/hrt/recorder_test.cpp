@@ -361,6 +361,22 @@ TEST_CASE("A value that is only held is not recorded as measured") {
   CHECK(std::isnan(cell("track_left_m")));
 }
 
+TEST_CASE("Flippers' currents may be held while those of the tracks are new") {
+  robot::State state = state_of(7);
+  state.track_a = {1, 2};
+  state.flipper_a = {3, 4, 5, 6};
+  const auto columns = hrt::record_columns();
+  const auto cell = [&](const hrt::RecordRow& row, const char* name) {
+    return row[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];
+  };
+  state.fields = robot::kHasCurrents;
+  CHECK(cell(hrt::record_row(state, robot::Command{}, 0), "flipper_fl_a") == 3);
+  state.fields |= robot::kHeldFlipperCurrents;
+  const hrt::RecordRow row = hrt::record_row(state, robot::Command{}, 0);
+  CHECK(cell(row, "track_left_a") == 1);
+  CHECK(std::isnan(cell(row, "flipper_fl_a")));
+}
+
 TEST_CASE("A recording that begins between two cycles has the command in force in its first row") {
   const support::TemporaryFolder folder;
   const auto robot = hrt::test::use_fake_robot();
