@@ -43,11 +43,17 @@ const DriveOrders& DriveTargets::step(const robot::Command& command, const Proce
 DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const double wanted_mps = std::clamp(speed_mps, -drive.max_speed, drive.max_speed);
-  // In cyclic velocity mode the drive follows each target at once: the master does the ramp.
-  const bool slower = std::abs(wanted_mps) < std::abs(track_mps_[i]);
-  const double rate = slower ? drive.quick_stop_deceleration : drive.acceleration;
-  const double dv = drive.mode == DriveMode::cyclic_velocity ? rate * period_s : 2 * drive.max_speed;
-  track_mps_[i] = std::clamp(wanted_mps, track_mps_[i] - dv, track_mps_[i] + dv);
+  if (drive.mode == DriveMode::cyclic_velocity) {
+    // The drive follows each target at once: the master does the ramp. The other way round begins with slowing down to
+    // 0.
+    const double before_mps = track_mps_[i];
+    const double towards_mps = wanted_mps * before_mps < 0 ? 0 : wanted_mps;
+    const bool slower = std::abs(towards_mps) < std::abs(before_mps);
+    const double dv = (slower ? drive.quick_stop_deceleration : drive.acceleration) * period_s;
+    track_mps_[i] = std::clamp(towards_mps, before_mps - dv, before_mps + dv);
+  } else {
+    track_mps_[i] = wanted_mps;
+  }
   return {canopen::kControlEnable, velocity_to_drive(drive.units, track_mps_[i])};
 }
 

@@ -70,6 +70,22 @@ TEST_CASE("A cyclic track speed is ramped by the description's acceleration, a p
   CHECK(direct.step(command, image, 0.01)[0].target == std::lround(0.2 * units));
 }
 
+TEST_CASE("A cyclic track that is to run the other way brakes as for a stop, and then speeds up") {
+  const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
+  const ProcessImage image = image_at(bus, 0);
+  DriveTargets targets(bus, held_at(bus, image));
+  robot::Command command;
+  command.track_speed_mps = {0.5, -0.5};
+  for (int k = 0; k < 20; ++k) targets.step(command, image, 0.01);
+  command.track_speed_mps = {-0.5, 0.5};
+  // in each 10 ms 0.125 m/s less at 12.5 m/s^2, and 0.05 m/s more at 5 m/s^2
+  for (const double speed_mps : {0.375, 0.25, 0.125, 0.0, -0.05, -0.1, -0.15}) {
+    const DriveOrders orders = targets.step(command, image, 0.01);
+    CHECK(orders[0].target == velocity_to_drive(bus.drives[0].units, speed_mps));
+    CHECK(orders[1].target == velocity_to_drive(bus.drives[1].units, -speed_mps));
+  }
+}
+
 TEST_CASE(
     "A speed beyond the limit is cut to it, a flipper goes to the same direction within its range as the simulated one "
     "does") {
