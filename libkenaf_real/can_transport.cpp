@@ -48,6 +48,18 @@ std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm
       configured_mm, described_mm);
 }
 
+// After the stand of the opening. Only a warning: the rate may be that of a robot that somebody turned meanwhile.
+std::string warning_of_gyro(const canbus::RobotBus& robot, const MeasuredState& measured) {
+  const std::optional<double> rate_radps = measured.unlearnt_gyro_radps();
+  if (!robot.gyro || !rate_radps) return {};
+  return fmt::format(
+      "{} measured {:.2f} rad/s while the tracks stood, too much to be taken for its bias: the heading may drift by "
+      "that; "
+      "leave the robot still while it is opened, or check units_per_radps, first_bit and bits in [can.gyro], or the "
+      "gyro",
+      to_string(NamedNode{robot.gyro->node, "gyro"}), *rate_radps);
+}
+
 // The warnings of all cases, since no cycle is to allocate: what the start has found, with and without a silent sensor.
 using Warnings = std::array<std::string, 3>;  // by MeasuredState::Silence
 Warnings warnings_with(const std::string& of_start, const canbus::RobotBus& robot) {
@@ -150,6 +162,8 @@ hrt::Connection CanTransport::set_up(const hrt_config& config) {
     if (!measure()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
     send({});
   }
+  s.warning_of_start = joined(warning_of_gyro(s.robot, *s.measured), s.warning_of_start);
+  s.warnings = warnings_with(joined(doubts_in_words(s.cycle.image(), s.robot), s.warning_of_start), s.robot);
   return {.period_s = s.period_s, .lockstep = false};
 }
 

@@ -27,9 +27,16 @@ void Heading::update(double rate_radps, double roll_rad, double pitch_rad, bool 
   if (standing_s_ > kSettled_s && std::abs(rate_radps) < kLargestBias_radps) {
     learnt_s_ = std::min(learnt_s_ + dt_s, kBiasTime_s);
     bias_radps_ += dt_s / learnt_s_ * (rate_radps - bias_radps_);
+  } else if (standing_s_ > kSettled_s) {
+    refused_s_ += dt_s;
+    last_refused_radps_ = rate_radps;
   }
   const double cosine = std::max(std::cos(pitch_rad), kLeastCosine);
   yaw_rad_ = wrapped(yaw_rad_ + (rate_radps - bias_radps_) * std::cos(roll_rad) / cosine * dt_s);
+}
+
+std::optional<double> Heading::unlearnt_radps() const {
+  return refused_s_ > learnt_s_ ? std::optional(last_refused_radps_) : std::nullopt;
 }
 
 }  // namespace kenaf::real

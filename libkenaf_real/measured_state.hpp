@@ -24,6 +24,7 @@ class MeasuredState {
   robot::State update(const BusCycle& cycle, const Beat& beat);
   enum class Silence : std::uint8_t { none, inclinometer, gyro };
   Silence silence() const { return silence_; }
+  std::optional<double> unlearnt_gyro_radps() const { return heading_.unlearnt_radps(); }  // as Heading
 
  private:
   void add_to_side(std::size_t drive, const DriveInput& input, robot::State& state);

@@ -50,3 +50,17 @@ TEST_CASE("On a slope of 60 degrees half of the turn about the body's axis is fe
   run(heading, 0.1, 0, kPi / 3, false, 1);
   CHECK(heading.yaw_rad() == Approx(0.2));
 }
+
+TEST_CASE("A rate beyond a bias's, for most of a stand, is told") {
+  Heading heading;
+  run(heading, 0.08, 0, 0, true, 0.15);
+  CHECK_FALSE(heading.unlearnt_radps());  // it may still rock
+  run(heading, 0.08, 0, 0, true, 0.35);
+  CHECK(heading.unlearnt_radps() == Approx(0.08));
+  CHECK(heading.bias_radps() == 0);
+
+  Heading bumped;
+  run(bumped, 0.01, 0, 0, true, 0.5);
+  run(bumped, 0.3, 0, 0, true, 0.1);
+  CHECK_FALSE(bumped.unlearnt_radps());
+}

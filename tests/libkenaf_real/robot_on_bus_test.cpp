@@ -240,6 +240,20 @@ TEST_CASE("A track_gauge_mm that is not the described robot's is warned of") {
   }
 }
 
+TEST_CASE("A gyro that turns while the robot stands, too fast for a bias, is warned of") {
+  for (const auto& [rate_radps, says] : {std::pair{0.04, ""}, {-0.08, "gyro (node 8) measured -0.08 rad/s while"}}) {
+    RobotOnBus robot;
+    robot.plant.yaw_rate_radps = rate_radps;
+    robot.open();
+    CHECK_THAT(robot.transport.warning(), Catch::StartsWith(says));
+    CHECK(robot.transport.warning().empty() == (std::string(says) == ""));
+    robot.wire.inject({candrives::FaultKind::silent, 7});
+    robot.run(15, robot::Command{});
+    CHECK_THAT(robot.transport.warning(),
+               Catch::StartsWith("inclinometer (node 7) is silent") && Catch::Contains(says));
+  }
+}
+
 TEST_CASE("A period that the bus cannot carry, or that is too long to notice a drive's silence in time, is refused") {
   struct Case {
     double period_s;
