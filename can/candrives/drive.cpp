@@ -195,6 +195,8 @@ void Drive::begin_quick_stop() {
 }
 
 void Drive::on_connection_lost(std::uint16_t error_code) {
+  if (quirks().missing_commands_fault && error_code == canopen::kErrorPdoTimeOut && power_.is_powered())
+    return fail(error_code);
   if (power_.state() != PowerState::operation_enabled) return;
   switch (option(object::abort_connection_option)) {
     case kAbortByFault:

@@ -40,6 +40,7 @@ enum class FaultKind : std::uint8_t {
   no_current,
   no_voltage,
   home_offset_negative,
+  missing_commands_fault,
   healed,  // ends all of these
 };
 

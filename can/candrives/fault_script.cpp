@@ -48,6 +48,7 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"no current", FaultKind::no_current},
                                                     {"no voltage", FaultKind::no_voltage},
                                                     {"home offset negative", FaultKind::home_offset_negative},
+                                                    {"missing commands fault", FaultKind::missing_commands_fault},
                                                     {"healed", FaultKind::healed}});
 
 constexpr std::string_view kBlanks = " \t\r";

@@ -49,7 +49,7 @@ WHAT: silent, power loss, fault CODE, following error, deaf, no heartbeat watch,
       sdo late, sdo wrong toggle, sdo garbage, short pdos, garbage, healed; quirks of some drives: slow boot,
       node guarding only, count first, fixed mapping, first rpdo fixed, slow commands, mode locked,
       halt blocks mode, old target, slow fault reset, velocity unsigned, velocity 16 bits, position 16 bits,
-      position 24 bits, no current, no voltage, home offset negative
+      position 24 bits, no current, no voltage, home offset negative, missing commands fault
 As: --fault "node 3 silent at 5" --fault "track left fault 0x2310 0.5 after motion")";
 
 std::optional<Options> read_options(int argc, char** argv, int& exit_status) {

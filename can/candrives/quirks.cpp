@@ -21,6 +21,7 @@ constexpr std::pair<FaultKind, bool Quirks::*> kSwitches[] = {
     {FaultKind::no_current, &Quirks::no_current},
     {FaultKind::no_voltage, &Quirks::no_voltage},
     {FaultKind::home_offset_negative, &Quirks::home_offset_negative},
+    {FaultKind::missing_commands_fault, &Quirks::missing_commands_fault},
 };
 
 }  // namespace

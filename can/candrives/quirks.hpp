@@ -29,6 +29,8 @@ struct Quirks {
   bool no_current = false;            // has no objects 0x6075 and 0x6078
   bool no_voltage = false;            // has no object 0x6079
   bool home_offset_negative = false;  // at home the position is minus object 0x607C
+  // The event timer's end is a fault while the motor has power, after a quick stop, too: its maker's choice (CiA 301).
+  bool missing_commands_fault = false;
 };
 
 // Switches on what the fault stands for; false: it is none of these.

@@ -107,6 +107,7 @@ TEST_CASE("Closing leaves no drive without commands until its event timer has en
   RobotOnBus robot;
   robot.open();
   robot.run(20, robot::Command{});
+  robot.wire.inject({candrives::FaultKind::missing_commands_fault, 0});
   delay_answers(robot);
   const canopen::Time begin = robot.wire.now();
   CHECK(error_of_closing(robot).code() == HRT_OK);

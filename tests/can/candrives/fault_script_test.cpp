@@ -41,6 +41,7 @@ TEST_CASE("Faults are read from words", "[fault script]") {
   CHECK(read("track left no current").fault.kind == FaultKind::no_current);
   CHECK(read("node 1 no voltage for 1").fault.kind == FaultKind::no_voltage);
   CHECK(read("flipper rear left home offset negative").fault.kind == FaultKind::home_offset_negative);
+  CHECK(read("all missing commands fault").fault.kind == FaultKind::missing_commands_fault);
 
   fault = read("bus garbage for 1");
   CHECK(fault.fault.kind == FaultKind::garbage);

@@ -204,6 +204,16 @@ TEST_CASE("Commands that stay away for longer than the event timer stop the driv
     // the reset is a loss of its own (CiA 402-2, 0x6007), and TPDO1 is as from the factory again: 0x0617, quick stop
     CHECK(robot.wait(1000) == Lines{"181#1706"});
   }
+  SECTION("a drive to which missing commands are a fault has one, in a quick stop, too") {
+    robot.inject({FaultKind::missing_commands_fault, 1});
+    robot.send("201#020000000000");
+    robot.send("080#");
+    REQUIRE(robot.drive(0).power_state() == PowerState::quick_stop_active);
+    robot.wait(49);
+    CHECK(robot.drive(0).power_state() == PowerState::quick_stop_active);
+    robot.wait(5);
+    CHECK(robot.drive(0).power_state() == PowerState::fault);
+  }
   SECTION("a drive with this fault goes on") {
     robot.inject({FaultKind::no_event_timer, 1});
     CHECK(robot.wait(1000).empty());
