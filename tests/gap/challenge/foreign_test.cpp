@@ -18,8 +18,7 @@ namespace {
 // Both tracks at 0.3 m/s, all flippers at 1 rad, from flippers at 0 on.
 rollout::Manoeuvre drive() {
   rollout::Manoeuvre replay;
-  replay.start = rollout::Start{
-      .x_m = 0, .y_m = 0, .yaw_rad = 0, .z_m = {}, .flipper_rad = std::array{0.0, 0.0, 0.0, 0.0}, .motion = {}};
+  replay.start = rollout::Start{.x_m = 0, .y_m = 0, .yaw_rad = 0, .z_m = {}, .flipper_rad = {0, 0, 0, 0}, .motion = {}};
   robot::Command command;
   command.track_speed_mps = {0.3, 0.3};
   for (auto& flipper : command.flipper) flipper = {robot::JointMode::angle, 1};
