@@ -133,7 +133,8 @@ void end_watches(BusCycle& cycle, const std::vector<std::size_t>& drives, const 
     }
   };
   std::vector<std::size_t> flippers_first = drives;
-  std::ranges::stable_partition(flippers_first, [&](std::size_t drive) { return bus.drives[drive].is_flipper(); });
+  std::stable_partition(flippers_first.begin(), flippers_first.end(),
+                        [&](std::size_t drive) { return bus.drives[drive].is_flipper(); });
   if (bus.event_timer != false) {
     for (const std::size_t drive : flippers_first) {
       end(drive, canbus::write_of_event_timer(canbus::pdos_of(bus, drive).command, 0));
