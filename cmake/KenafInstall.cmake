@@ -18,6 +18,7 @@ install(DIRECTORY formats/settings DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats"
   FILES_MATCHING PATTERN "*.cpp" PATTERN "*.hpp")
 install(FILES formats/protocol/datagram_codec.cpp formats/protocol/datagram_codec.hpp
   formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
+  formats/protocol/reached_address.cpp formats/protocol/reached_address.hpp
   DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)
 install(FILES formats/runs/port_file.cpp formats/runs/port_file.hpp formats/runs/run_file.hpp
   formats/runs/whole_file.cpp formats/runs/whole_file.hpp
