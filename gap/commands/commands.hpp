@@ -2,6 +2,7 @@
 // is invalid, with words for the user, which the program prints before it ends with status 2.
 #pragma once
 
+#include <functional>
 #include <stdexcept>
 
 namespace CLI {
@@ -23,8 +24,9 @@ void add_challenge_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_dataset_command(CLI::App& program);
-// `ranks`: processes that share the work; the first one writes and prints.
-void add_diagnose_command(CLI::App& program, const Ranks& ranks);
+// `ranks`: called once the command line is right; returns the processes that share the work, of which the first one
+// writes and prints.
+void add_diagnose_command(CLI::App& program, std::function<Ranks()> ranks);
 void add_effects_command(CLI::App& program);
 void add_export_command(CLI::App& program);
 void add_import_command(CLI::App& program);

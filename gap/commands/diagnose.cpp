@@ -2,8 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "command_line/checks.hpp"
 #include "gap/commands/commands.hpp"
@@ -15,7 +17,7 @@
 
 namespace kenaf::gap::commands {
 
-void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
+void add_diagnose_command(CLI::App& program, std::function<Ranks()> ranks) {
   struct Options {
     std::string dataset, out;
     bool curves = false;
@@ -24,7 +26,6 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   diagnose::DiagnosisOptions& diagnosis = options->diagnosis;
-  diagnosis.ranks = ranks;
   CLI::App* command =
       program.add_subcommand("diagnose", "names the effects that cause the gap between simulation and runs");
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
@@ -58,9 +59,10 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       ->check(command_line::whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
 
-  command->callback([options] {
+  command->callback([options, ranks = std::move(ranks)] {
     for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
+    options->diagnosis.ranks = ranks();
 
     // Only the first of several processes reports. It checks where it will write before anything long starts.
     options->diagnosis.stop = &interruption();

@@ -25,7 +25,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::commands::add_check_command,
     kenaf::gap::commands::add_compare_command,
     kenaf::gap::commands::add_dataset_command,
-    [](CLI::App& program) { kenaf::gap::commands::add_diagnose_command(program, {}); },
+    [](CLI::App& program) { kenaf::gap::commands::add_diagnose_command(program, [] { return kenaf::gap::Ranks{}; }); },
     kenaf::gap::commands::add_effects_command,
     kenaf::gap::commands::add_export_command,
     kenaf::gap::commands::add_import_command,

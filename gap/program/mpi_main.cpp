@@ -9,8 +9,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
-#include <string_view>
+#include <optional>
+#include <vector>
 
 #include "command_line/parse.hpp"
 #include "gap/commands/commands.hpp"
@@ -61,41 +63,47 @@ bool any(bool mine) {
   return sum > 0;
 }
 
-int run(int argc, char** argv, const Ranks& ranks) {
-  CLI::App program{"Diagnoses with several processes, started with mpirun", "kenaf-gap-mpi"};
-  program.require_subcommand(1);
-  kenaf::gap::commands::add_diagnose_command(program, ranks);
-  try {
-    // All ranks have the same arguments; only one prints what is wrong.
-    using command_line::Speaks;
-    const auto status = command_line::parse(program, argc, argv, ranks.rank > 0 ? Speaks::no : Speaks::yes);
-    if (status) return *status;
-  } catch (const std::exception& error) {
-    // An error may concern one rank only: a machine without the dataset, a full disk.
-    std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", ranks.rank, ranks.count, error.what());
-    std::fflush(stderr);
-    MPI_Abort(MPI_COMM_WORLD, kBadInput);  // another rank may wait for this one's results
-  }
+// The rank by the variables that launchers set: PMIx (Open MPI, Slurm), PMI (MPICH, Intel MPI). Zero without them.
+int announced_rank() {
+  for (const char* variable : {"PMIX_RANK", "PMI_RANK"})
+    if (const char* rank = std::getenv(variable)) return std::atoi(rank);
   return 0;
 }
 
-bool only_asks(int argc, char** argv) {
-  return std::any_of(argv + 1, argv + argc,
-                     [](std::string_view word) { return word == "-h" || word == "--help" || word == "--version"; });
+Ranks start_mpi() {
+  MPI_Init(nullptr, nullptr);
+  Ranks ranks;
+  MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks.count);
+  ranks.share = [rank = ranks.rank, count = ranks.count](std::vector<Eigen::VectorXd>& results) {
+    share(results, rank, count);
+  };
+  ranks.any = any;
+  return ranks;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Without mpirun, MPI only starts on machines that can start processes on others; help works everywhere.
-  if (only_asks(argc, argv)) return run(argc, argv, {});
-  MPI_Init(&argc, &argv);
-  Ranks ranks;
-  MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks.count);
-  ranks.share = [&ranks](std::vector<Eigen::VectorXd>& results) { share(results, ranks.rank, ranks.count); };
-  ranks.any = any;
-  const int status = run(argc, argv, ranks);
+  CLI::App program{"Diagnoses with several processes, started with mpirun", "kenaf-gap-mpi"};
+  program.require_subcommand(1);
+  // MPI is started when the command line is right: without mpirun it starts processes of its own, which help and wrong
+  // use can do without.
+  std::optional<Ranks> ranks;
+  kenaf::gap::commands::add_diagnose_command(program, [&ranks] { return ranks.emplace(start_mpi()); });
+  try {
+    // All ranks have the same arguments; only one prints what is wrong.
+    using command_line::Speaks;
+    const auto status = command_line::parse(program, argc, argv, announced_rank() > 0 ? Speaks::no : Speaks::yes);
+    if (status) return *status;
+  } catch (const std::exception& error) {
+    // An error may concern one rank only: a machine without the dataset, a full disk.
+    const Ranks of_error = ranks.value_or(Ranks{});
+    std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", of_error.rank, of_error.count, error.what());
+    std::fflush(stderr);
+    if (!ranks) return kBadInput;
+    MPI_Abort(MPI_COMM_WORLD, kBadInput);  // another rank may wait for this one's results
+  }
   MPI_Finalize();
-  return status;
+  return 0;
 }
