@@ -25,6 +25,7 @@ using FlipperAngles = std::array<double, robot::kFlipperCount>;
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after this time
 constexpr double kFold_s = 5;      // flippers with a fast servo reach any angle from any other in this time
 constexpr double kStill_radps = 0.005;
+constexpr double kAlike_rad = 1e-3;     // an encoder of 12 bits resolves 1.5e-3
 constexpr double kLagsUntilStill = 10;  // time constants of a lag after which nothing of it is left
 constexpr double kMisplaced_m = 1e-5, kMisplaced_rad = 1e-5;
 constexpr double kInTheAir_m = 0.01;  // a recorded start higher than this above the settled robot is a drop
@@ -105,13 +106,14 @@ double longest_fold_s(const RobotDescription& robot) {
          kLagsUntilStill * robot.effects.flipper_lag_s;
 }
 
-// The angle of all flippers that the robot has; empty if they differ, or if it has none.
+// The angle of all flippers that the robot has; empty if they differ by more than a servo corrects while the robot
+// settles, or if it has none.
 std::optional<double> common_angle(const RobotDescription& robot, const FlipperAngles& flippers) {
   std::optional<double> common;
   for (std::size_t i = 0; i < flippers.size(); ++i) {
     if (!robot.has(static_cast<robot::Flipper>(i))) continue;
-    if (common && *common != flippers[i]) return std::nullopt;
-    common = flippers[i];
+    if (common && std::abs(*common - flippers[i]) > kAlike_rad) return std::nullopt;
+    if (!common) common = flippers[i];
   }
   return common;
 }

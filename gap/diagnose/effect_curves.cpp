@@ -96,33 +96,31 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
   return points;
 }
 
-// Ends of the range on sides of the present value where the curve, extrapolated to the end, stays shorter than the gap.
-// A side without points uses the other side.
+// Length at an end of the range by a straight line: the largest length of a shift per unit of value on that side of the
+// present value, or of the other side if it has no points.
+double straight_length(const EffectCurves& curves, const StageData& data, std::size_t c, double end) {
+  const double present = curves.candidates[c].present;
+  std::optional<double> same_side, other_side;
+  for (const CurvePoint& point : curves.curves[c].points) {
+    if (point.column < 0) continue;
+    const double by_value = length_of_column(curves, data, point.column) / std::abs(point.value - present);
+    std::optional<double>& longest = (point.value > present) == (end > present) ? same_side : other_side;
+    longest = std::max(longest.value_or(0), by_value);
+  }
+  return (same_side ? *same_side : other_side.value_or(0)) * std::abs(end - present);
+}
+
+// Ends of the range where the curve, extrapolated to them, stays shorter than the gap.
 std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const StageData& data,
                                          std::span<const std::size_t> chosen) {
   const double gap = gap_in_noise(data);
   std::vector<Setting> ends;
   for (const std::size_t c : chosen) {
     const candidates::Candidate& candidate = curves.candidates[c];
-    const std::vector<CurvePoint>& points = curves.curves[c].points;
-    // per side of the present value, the largest length of a shift per unit of value
-    const auto side_of = [&](double value) { return value > candidate.present ? 1 : 0; };
-    std::optional<double> length_by_value[2];
-    for (const CurvePoint& point : points) {
-      if (point.column < 0) continue;
-      const double by_value = length_of_column(curves, data, point.column) / std::abs(point.value - candidate.present);
-      std::optional<double>& longest = length_by_value[side_of(point.value)];
-      longest = std::max(longest.value_or(0), by_value);
-    }
-
-    // extrapolated to the end of the range: length = largest ratio * distance
-    for (const double end : {candidate.min, candidate.max}) {
-      const std::optional<double> seen =
-          length_by_value[side_of(end)] ? length_by_value[side_of(end)] : length_by_value[1 - side_of(end)];
-      const double straight = seen.value_or(0) * std::abs(end - candidate.present);
-      if (straight < gap && end != candidate.present && std::ranges::count(points, end, &CurvePoint::value) == 0)
+    for (const double end : {candidate.min, candidate.max})
+      if (end != candidate.present && std::ranges::count(curves.curves[c].points, end, &CurvePoint::value) == 0 &&
+          straight_length(curves, data, c, end) < gap)
         ends.push_back({c, end});
-    }
   }
   return ends;
 }
@@ -205,8 +203,8 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
     const candidates::Candidate& candidate = curves.candidates[c];
     const bool both_ways = candidate.min < candidate.present && candidate.present < candidate.max;
     const double end = end_of_range(candidate);
-    points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
-    if (candidate.whole > 0) points.push_back({c, ordinarily_off(candidate)});
+    points.push_back({c, candidate.whole > 0 ? ordinarily_off(candidate)
+                                             : candidate.present + kSpread[0] * (end - candidate.present)});
     // an effect with a threshold (drives that stall) shows only farther out, and hides the other side
     if (!both_ways)
       points.push_back({c, end});
@@ -214,7 +212,17 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
       points.push_back({c, candidate.present + kSpread[0] * (candidate.min - candidate.present)});
   }
   add_points(curves, data, points, Fidelity::coarse, simulate);
-  add_points(curves, data, ends_of_short_sides(curves, data, chosen), Fidelity::coarse, simulate);
+
+  // what a number does to the gap shows at a quarter of its range, if not only at its end
+  const double gap = gap_in_noise(data);
+  points = ends_of_short_sides(curves, data, chosen);
+  for (const std::size_t c : chosen) {
+    const candidates::Candidate& candidate = curves.candidates[c];
+    const double end = end_of_range(candidate);
+    if (candidate.whole > 0 && straight_length(curves, data, c, end) >= gap)
+      points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
+  }
+  add_points(curves, data, points, Fidelity::coarse, simulate);
 }
 
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,

@@ -54,10 +54,10 @@ double ordinarily_off(const candidates::Candidate& candidate);
 // Curves with their present points only.
 EffectCurves empty_curves(const StageData& data, std::span<const candidates::Candidate> candidates);
 
-// First look: adds one point near the present value of each of `chosen`; for one-sided effects also the end of the
-// range, for two-sided ones a point on the other side, for numbers of the description instead one at an ordinary error.
-// If the curve, extrapolated to an end of the range, stays shorter than the gap, adds that end, too: a servo's torque
-// may suffice down to half of it.
+// First look: adds one point near the present value of each of `chosen`, of numbers of the description at an ordinary
+// error; for one-sided ones also the end of the range, for two-sided effects a point on the other side. If the curve,
+// extrapolated to an end of the range, stays shorter than the gap, adds that end, too: a servo's torque may suffice
+// down to half of it. Numbers whose curve does not stay shorter get a point a quarter of the way instead.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
 // Simulates points spread over the range of each of `chosen`, denser near the present value, where it has none.

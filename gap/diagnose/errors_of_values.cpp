@@ -50,9 +50,9 @@ std::vector<MatrixXd> differences_of_robots(const StageData& data, const Standin
     with_effects.push_back(with(model, off));
     without.push_back(std::move(off));
   }
-  const std::vector<GroupVectors> shifts = simulate(with_effects, Fidelity::fine);
+  const std::vector<GroupVectors> shifts = simulate(with_effects, Fidelity::coarse);
   std::vector<GroupVectors> shifts_without;
-  if (numbers.also_before || numbers.also_without) shifts_without = simulate(without, Fidelity::fine);
+  if (numbers.also_before || numbers.also_without) shifts_without = simulate(without, Fidelity::coarse);
   std::vector<MatrixXd> differences;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     MatrixXd& of_group = differences.emplace_back(MatrixXd::Zero(std::ssize(data.groups[g].bins), 2 * kRobots));

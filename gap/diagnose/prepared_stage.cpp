@@ -1,6 +1,7 @@
 #include "gap/diagnose/prepared_stage.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "gap/diagnose/baseline.hpp"
@@ -64,7 +65,7 @@ Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
 PreparedStage prepare_stage(const StageInput& input, std::span<const candidates::Candidate> candidates,
                             Predictor& predictor) {
   const std::vector<StageFeatures>& features = *input.features;
-  PreparedStage stage{input, candidates, {}, {}, {}, {}};
+  PreparedStage stage{input, candidates, {}, {}, {}, {}, {}};
   for (std::size_t r = 0; r < features.size(); ++r)
     stage.residuals.push_back(features[r].measured - predictor.nominal(input.passage)[r]);
   if (std::ranges::all_of(features, [](const StageFeatures& run) { return run.bins.empty(); })) return stage;
@@ -85,6 +86,8 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
   // a first look at all candidates; errors of the description's numbers are the same in a baseline
   const Simulate simulate = simulator_of(stage, predictor);
   stage.curves = first_look(stage.nominal.data, candidates, stage.possible, simulate);
+  std::ranges::copy_if(stage.possible, std::back_inserter(stage.visible),
+                       [&](std::size_t c) { return stage.curves.curves[c].visible > 1; });
   if (!has_baseline(features)) floor.number_shapes = number_shapes(stage.nominal.data, stage.curves, stage.possible);
   stage.nominal.shapes_of_all_numbers = floor.number_shapes;
   stage.nominal.data = data_in(stage, floor);

@@ -26,6 +26,7 @@ struct PreparedStage {
   StageInput input;
   std::span<const candidates::Candidate> candidates;  // must outlive this
   std::vector<std::size_t> possible;                  // candidates_of()
+  std::vector<std::size_t> visible;                   // those of them that shift these runs at any size
   std::vector<Eigen::VectorXd> residuals;
   StageAround nominal;  // no data if no run measures the stage
   EffectCurves curves;  // of candidates that can matter, over their range
