@@ -37,7 +37,10 @@ export function createChannels(changed) {
   function load(run) {
     const gap = nominalGapOf(run), floors = gap?.floors ?? {}, of = (channel) => floors[channel.column] ?? -1;
     sorted = [...run.channels].sort((a, b) => of(b) - of(a));
-    list.replaceChildren(...sorted.map((channel) => {
+    const note = document.createElement("p");
+    note.textContent = "Nominal simulation, rms of this run:";
+    note.hidden = !gap;
+    list.replaceChildren(note, ...sorted.map((channel) => {
       const title = of(channel) < 0 ? titleOf(channel.column) : `${titleOf(channel.column)}, ${timesNoise(of(channel))}`;
       const label = checkBox(` ${title}`, false, (on) => turn(channel.column, on));
       label.firstChild.dataset.column = channel.column;

@@ -220,8 +220,8 @@ export function createCurves(xOf, zoom) {
         let text = value === null ? "\u2013" : fixed(value, digits);
         const s = off ? Math.floor(t / off.span_s + 1e-6) : 0, mean = off?.means[s] ?? null;
         if (mean !== null) text += ` (mean ${signed(fixed(mean, digits))}, ${timesNoise(Math.abs(off.times[s] ?? mean / floor))})`;
-        const reading = span("reading", text, kind);
-        reading.title = kind === "command" ? "command" : off ? `${kind}: value (measured minus simulated, mean over ${off.span_s} s, and how many times the noise that is)` : kind;
+        const reading = span("reading", kind === "command" ? `commanded ${text}` : text, kind);
+        reading.title = off ? `${kind}: value (measured minus simulated, mean over ${off.span_s} s, and how many times the noise that is)` : kind;
         reading.prepend(span("swatch", "", kind));
         return reading;
       }));
@@ -229,5 +229,5 @@ export function createCurves(xOf, zoom) {
     }
   }
 
-  return { draw, read, parts: () => strips.map(({ canvas, channel, readings }) => ({ canvas, title: `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`, readings: [...readings.children].map((reading) => `${reading.dataset.kind} ${reading.textContent}`).join("; ") })) };
+  return { draw, read, parts: () => strips.map(({ canvas, channel, readings }) => ({ canvas, title: `${titleOf(channel.column)}, ${shownUnit(channel.unit)}`, readings: [...readings.children].map((reading) => reading.dataset.kind === "command" ? reading.textContent : `${reading.dataset.kind} ${reading.textContent}`).join("; ") })) };
 }
