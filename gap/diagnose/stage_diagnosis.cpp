@@ -12,6 +12,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/errors_of_values.hpp"
 #include "gap/diagnose/judgement.hpp"
+#include "gap/diagnose/looks.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/shares_of_effects.hpp"
@@ -197,21 +198,6 @@ void allow_for_numbers(StageDiagnosis& stage, const PreparedStage& prepared, Pre
   doubt_uncertain_values(decision, prepared.candidates);
 }
 
-// What is open around a model hardly depends on its values, but takes as long to simulate as all else about it. Returns
-// the settings of an earlier look around the same effects with values within a tenth of what they change; else
-// `settings`, which are added to `looks`.
-const Settings& nearly_looked_at(std::vector<Settings>& looks, const Settings& settings,
-                                 std::span<const candidates::Candidate> candidates) {
-  constexpr double kNearly = 0.1;  // chosen
-  const auto is_near = [&](const Setting& a, const Setting& b) {
-    return a.candidate == b.candidate &&
-           std::abs(a.value - b.value) <= kNearly * std::abs(b.value - candidates[b.candidate].present);
-  };
-  const auto found =
-      std::ranges::find_if(looks, [&](const Settings& look) { return std::ranges::equal(look, settings, is_near); });
-  return found != looks.end() ? *found : looks.emplace_back(settings);
-}
-
 // A significant but invisibly small difference without a name is no gap.
 void drop_invisible_gap(StageDiagnosis& stage, const DecisionSettings& settings) {
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
@@ -236,7 +222,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   const Simulate simulate = simulator_of(prepared, predictor);
   std::vector<Settings> looks;
   const Around around = [&](const Settings& settings, std::span<const std::size_t> valued) {
-    const Settings& looked_at = nearly_looked_at(looks, settings, candidates);
+    const Settings& looked_at = nearest_look(looks, settings, candidates);
     StageAround result{with_open_shapes(stage.nominal_floor, open_around(prepared, predictor, looked_at)), {}, {}};
     const auto shapes = has_baseline(features) ? number_shapes_of_change : number_shapes_around;
     const auto shapes_but = [&](std::span<const std::size_t> these) {
