@@ -8,6 +8,7 @@
 using namespace kenaf;
 using namespace kenaf::gap;
 using namespace kenaf::gap::diagnose;
+using test::LinearWorld;
 using test::Whole;
 using test::world;
 using test::WorldChannel;
