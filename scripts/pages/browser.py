@@ -17,6 +17,10 @@ def end_on_request():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
 
 
+class PageThrew(RuntimeError):
+    """What was evaluated threw."""
+
+
 class Browser:
     """An open page; `switches` are further ones of Chromium's. Use it in a `with` statement."""
 
@@ -120,20 +124,23 @@ class Browser:
         """What the expression is worth; a promise is waited for. Raises where it throws."""
         answer = self.call('Runtime.evaluate', expression=expression, returnByValue=True, awaitPromise=True)
         if 'exceptionDetails' in answer:
-            raise RuntimeError(answer['exceptionDetails'].get('exception', {}).get('description', str(answer['exceptionDetails'])))
+            raise PageThrew(answer['exceptionDetails'].get('exception', {}).get('description', str(answer['exceptionDetails'])))
         return answer['result'].get('value')
 
     def wait_for(self, expression):
-        end = time.monotonic() + PATIENCE_S
+        end, why = time.monotonic() + PATIENCE_S, ''
         while True:
             try:
+                why = ''
                 if self.evaluate(f'Boolean({expression})'):
                     return
+            except PageThrew as error:  # what it is about may not be there yet
+                why = f', last: {error}'
             except RuntimeError as error:  # asked while the page was left
                 if 'navigated' not in str(error) and 'context' not in str(error):
                     raise
             if time.monotonic() > end:
-                raise RuntimeError(f'in vain waited for: {expression}')
+                raise RuntimeError(f'in vain waited for: {expression}{why}')
             time.sleep(0.02)
 
     def screenshot(self, png):

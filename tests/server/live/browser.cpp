@@ -186,19 +186,24 @@ void Browser::click(const std::string& selector) {
 json Browser::evaluate(const std::string& expression) {
   const json answer =
       call("Runtime.evaluate", {{"expression", expression}, {"returnByValue", true}, {"awaitPromise", true}});
-  if (answer.contains("exceptionDetails")) throw std::runtime_error(answer["exceptionDetails"].dump());
+  if (answer.contains("exceptionDetails")) throw PageThrew(answer["exceptionDetails"].dump());
   return answer["result"].value("value", json());
 }
 
 void Browser::wait_for(const std::string& expression) {
+  std::string why;
   const bool held = support::eventually([&] {
     try {
+      why.clear();
       return evaluate("Boolean(" + expression + ")") == true;
     } catch (const PageLeft&) {
       return false;  // it was asked while the page loaded itself anew
+    } catch (const PageThrew& error) {
+      why = std::string(", last: ") + error.what();
+      return false;  // what it is about may not be there yet
     }
   });
-  if (!held) throw std::runtime_error("in vain waited for: " + expression);
+  if (!held) throw std::runtime_error("in vain waited for: " + expression + why);
 }
 
 void Browser::screenshot(const std::filesystem::path& png) {

@@ -19,6 +19,10 @@ namespace kenaf::live {
 struct PageLeft : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+// What was evaluated threw.
+struct PageThrew : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class Browser {
  public:
@@ -45,7 +49,7 @@ class Browser {
   void click(const std::string& selector);
   // What the expression is worth; a promise is waited for. Throws where it throws.
   nlohmann::json evaluate(const std::string& expression);
-  // Until the expression is true; the page may load itself anew meanwhile.
+  // Until the expression is true. It may throw before that, and the page may load itself anew.
   void wait_for(const std::string& expression);
   void screenshot(const std::filesystem::path& png);
   // What the page complained of so far: errors, exceptions, what its policy kept out.
