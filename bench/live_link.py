@@ -15,8 +15,8 @@ The browser draws no 3D: without a graphics card it would draw on the cores that
 place in 1; in 2 the world is drawn once and then stands still, and the pictures are as small as they are beside it. Other
 load on the machine changes CPU time little and the rest much: run it on an idle one.
 
-Exit status 1: tracks that rest later than 150 ms after the round trip, no alarm, a median age wrong by more than 10 ms, or more than 0.17 of a
-core, standing or turning; 2: wrong use.
+Exit status 1: tracks that rest later than 150 ms after the round trip, no alarm, a median age wrong by more than 10 ms, or
+more than 0.17 of a core, standing or turning; 2: wrong use.
 """
 import argparse, asyncio, base64, bisect, contextlib, json, os, pathlib, socket, sys, threading, time, urllib.parse
 
@@ -138,7 +138,6 @@ class Witness:
             return None
         t, ms = self._robot_time_s[after - 1:after + 1], self._reached_ms[after - 1:after + 1]
         return ms[0] + (ms[1] - ms[0]) * (robot_time_s - t[0]) / (t[1] - t[0])
-
 
     def rested_ms(self, since_ms):
         """When the tracks of all robots had come to rest; None if they had not."""

@@ -2,8 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/gap/diagnose/linear_world.hpp"
-
 using namespace kenaf::gap::diagnose;
 using kenaf::gap::candidates::Candidate;
 
