@@ -1,13 +1,14 @@
 // Speed of the physics: steps per second, real-time factor and contacts per step, on one core. Measures thread CPU
 // time, so that other load on the machine does not change the result.
 //
-// Usage: physics_speed [robot-seconds per scene, default 20]
+// Usage: physics_speed [robot-seconds per scene, default 20] [--only NAME]
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/thread_time.hpp"
@@ -71,8 +72,10 @@ void measure(const Case& scene, double time_s) {
 
 int main(int argc, char** argv) {
   double time_s = 20;
+  std::string only;
   CLI::App app{"Speed of the physics, a scene a line", "physics_speed"};
   app.add_option("seconds", time_s, "robot-seconds per scene")->check(kenaf::command_line::number_in(0.001, 1e6));
+  app.add_option("--only", only, "scenes whose name has this");
   if (const auto status = kenaf::command_line::parse(app, argc, argv)) return *status;
   fmt::print("{:<28} {:>10} {:>12} {:>14}\n", "scene", "steps/s", "real time x", "contacts/step");
   for (const Case& scene : {Case{"standing", "flat", 0, 0, 1, 1}, Case{"straight", "flat", 0.2, 0.2, 1, 1},
@@ -81,6 +84,6 @@ int main(int argc, char** argv) {
                             Case{"climbing a 200 mm step", "step-200", 0.2, 0.2, 0.8, 0, 1, 0.3},
                             Case{"crossing a 300 mm trench", "trench-300", 0.2, 0.2, 0, 0, 1, 0.4},
                             Case{"16 robots, turning", "flat", -0.1, 0.2, 1, 1, 16}})
-    measure(scene, time_s);
+    if (std::string_view(scene.name).find(only) != std::string_view::npos) measure(scene, time_s);
   return 0;
 }

@@ -9,13 +9,23 @@ struct FreeVelocity {
   btVector3 v, w;
 };
 
-// At the end of a step in which nothing but gravity and the gyroscopic moment acts on the body; Bullet's arithmetic
-// (btSequentialImpulseConstraintSolver: initSolverBody, convertBodies).
-FreeVelocity free_velocity(btRigidBody& body, btScalar time_step) {
-  btVector3 turn = body.getTotalTorque() * body.getInvInertiaTensorWorld() * time_step;
-  turn += body.computeGyroscopicImpulseImplicit_Body(time_step);
+// What the gyroscopic moment changes of a body's angular velocity, in W: one Newton step of I w' = h w' x I w' from w,
+// in the body's axes, where I is diagonal; as btRigidBody::computeGyroscopicImpulseImplicit_Body does it with
+// quaternions in three times the time.
+btVector3 gyroscopic_turn(const btRigidBody& body, btScalar h) {
+  const btMatrix3x3& R = body.getWorldTransform().getBasis();
+  const btVector3 I = body.getLocalInertia();
+  const btVector3 w = body.getAngularVelocity() * R, L = I * w;
+  const btMatrix3x3 jacobian(I.x(), h * (L.z() - w.z() * I.y()), h * (w.y() * I.z() - L.y()),
+                             h * (w.z() * I.x() - L.z()), I.y(), h * (L.x() - w.x() * I.z()),
+                             h * (L.y() - w.y() * I.x()), h * (w.x() * I.y() - L.x()), I.z());
+  return R * -jacobian.solve33(h * w.cross(L));
+}
+
+// At the end of a step in which nothing but gravity and the gyroscopic moment acts on the body.
+FreeVelocity free_velocity(const btRigidBody& body, btScalar time_step) {
   return {body.getLinearVelocity() + body.getTotalForce() * body.getInvMass() * time_step,
-          body.getAngularVelocity() + turn};
+          body.getAngularVelocity() + gyroscopic_turn(body, time_step)};
 }
 
 btMatrix3x3 inertia_W(const btRigidBody& body) {

@@ -13,13 +13,33 @@ btTransform pose_after(const btRigidBody& body, btScalar time_step) {
   return X;
 }
 
+bool contains(const btBroadphaseProxy& box, const btVector3& low_W, const btVector3& high_W) {
+  for (int k = 0; k < 3; ++k)
+    if (!(box.m_aabbMin[k] <= low_W[k] && high_W[k] <= box.m_aabbMax[k])) return false;
+  return true;
+}
+
 }  // namespace
 
-// Predicted poses of the bodies, which the boxes of the broad phase include.
-void DynamicsWorld::predictUnconstraintMotion(btScalar time_step) {
+// A body's box in the broad phase is larger than the body by kSpare_m, and stays until the body leaves it.
+void DynamicsWorld::updateAabbs() {
+  constexpr btScalar kSpare_m = 0.005;           // at 0.2 m/s a new box each 25 steps of 1 ms
+  constexpr btScalar kLargestSquared_m2 = 1e12;  // as in btCollisionWorld::updateSingleAabb
+  const btVector3 touching(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  const btVector3 spare(kSpare_m, kSpare_m, kSpare_m);
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
-    body.setInterpolationWorldTransform(pose_after(body, time_step));
+    if (!body.isActive()) continue;
+    btBroadphaseProxy& box = *body.getBroadphaseProxy();
+    btVector3 low_W, high_W;
+    body.getCollisionShape()->getAabb(body.getWorldTransform(), low_W, high_W);
+    low_W -= touching;
+    high_W += touching;
+    if (contains(box, low_W, high_W)) continue;
+    if ((high_W - low_W).length2() < kLargestSquared_m2)
+      m_broadphasePairCache->setAabb(&box, low_W - spare, high_W + spare, m_dispatcher1);
+    else
+      updateSingleAabb(&body);  // deactivates it
   }
 }
 

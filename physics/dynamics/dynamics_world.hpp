@@ -1,6 +1,6 @@
 // Bullet's world with our own step: Bullet finds contacts, the contact solver does the rest.
 //
-// Parts of Bullet's step without effect here are left out, 4 % of a climb's time: damping of 0, predicted contacts of
+// Parts of Bullet's step without effect here are left out: damping of 0, predicted poses and contacts of
 // fast bodies (none use them), sleeping, and islands, as the solver finds its own groups.
 #pragma once
 
@@ -19,7 +19,8 @@ class DynamicsWorld : public btDiscreteDynamicsWorld {
   void solveConstraints(btContactSolverInfo& info) override;
 
  protected:
-  void predictUnconstraintMotion(btScalar time_step) override;
+  void updateAabbs() override;
+  void predictUnconstraintMotion(btScalar) override {}
   void createPredictiveContacts(btScalar) override {}
   void calculateSimulationIslands() override {}
   void integrateTransforms(btScalar time_step) override;

@@ -32,6 +32,7 @@ double FlipperJoint::raw_angle_rad() const {
 
 void FlipperJoint::after_step(double time_step_s) {
   angle_rad_ += robot::wrap_angle(raw_angle_rad() - angle_rad_);
+  speed_radps_ = axis_W().dot(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity());
   if (!coupling_.rigid())
     servo_rad_ =
         std::clamp(servo_rad_ + time_step_s * servo_radps_, angle_rad_ - most_apart_rad_, angle_rad_ + most_apart_rad_);
@@ -43,13 +44,9 @@ void FlipperJoint::restart(double angle_rad) {
 }
 
 void FlipperJoint::come_to_rest() {
-  servo_radps_ = 0;
+  speed_radps_ = servo_radps_ = 0;
   servo_impulse = 0;
   servo.limit = LimitedDrive::Limit::none;
-}
-
-double FlipperJoint::speed_radps() const {
-  return axis_W().dot(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity());
 }
 
 void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescription& flipper,
@@ -135,10 +132,10 @@ void FlipperJoint::push_through(double servo_radps, double torque_nm, double tim
 }
 
 FlipperJoint::Hinge FlipperJoint::hinge() const {
-  const btTransform X_WJa = m_rbA.getCenterOfMassTransform() * X_AJ_;
-  const btTransform X_WJb = m_rbB.getCenterOfMassTransform() * X_BJ_;
-  const btVector3 y_a = X_WJa.getBasis().getColumn(1), y_b = X_WJb.getBasis().getColumn(1);
-  return {X_WJa.getOrigin(), -y_a, X_WJb.getOrigin() - X_WJa.getOrigin(), y_a.cross(y_b)};
+  const btTransform &X_WA = m_rbA.getCenterOfMassTransform(), &X_WB = m_rbB.getCenterOfMassTransform();
+  const btVector3 axis_a = axis_W(), y_b = X_WB.getBasis() * X_BJ_.getBasis().getColumn(1);
+  const btVector3 pivot_W = X_WA * X_AJ_.getOrigin();
+  return {pivot_W, axis_a, X_WB * X_BJ_.getOrigin() - pivot_W, y_b.cross(axis_a)};
 }
 
 }  // namespace kenaf::physics

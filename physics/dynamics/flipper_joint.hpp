@@ -31,7 +31,7 @@ class FlipperJoint : public btTypedConstraint {
   FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ,
                const ServoCoupling& coupling);
 
-  // Reads the angle from the bodies; call once after each step.
+  // Reads angle and speed from the bodies; call once after each step.
   void after_step(double time_step_s);
   // Sets the angle and clears the history.
   void restart(double angle_rad);
@@ -47,7 +47,7 @@ class FlipperJoint : public btTypedConstraint {
   double angle_rad() const { return angle_rad_; }
   // On the servo's side of play and compliance, where its encoder sits.
   double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
-  double speed_radps() const;
+  double speed_radps() const { return speed_radps_; }
   double torque_nm(double time_step_s) const { return servo_impulse / time_step_s; }  // + lifts the tip
   // The servo's part of it, without the mechanical stop, which takes no current.
   double servo_nm(double time_step_s) const {
@@ -78,7 +78,7 @@ class FlipperJoint : public btTypedConstraint {
   double raw_angle_rad() const;
 
   btTransform X_AJ_, X_BJ_;
-  double angle_rad_ = 0;
+  double angle_rad_ = 0, speed_radps_ = 0;
   ServoCoupling coupling_;
   double servo_most_nm_ = 0;
   double followed_rad_ = 0;                                      // the commanded angle after the lag
