@@ -63,13 +63,6 @@ struct ArticulatedBody {
 // without contacts. Each servo acts as its joint says that it did at the end of the last step.
 ArticulatedBody to_solver(btRigidBody& base, std::span<Arm> arms, btScalar time_step, btScalar correction_per_s);
 
-// The velocity of a point that is fixed to the base, or to `arm` if it is not null, without contacts.
-inline btVector3 velocity_without_contacts(const ArticulatedBody& body, const Arm* arm, const btVector3& p_W) {
-  const btVector3 v = body.v + body.w.cross(p_W - body.p_WC);
-  if (!arm) return v;
-  return v + arm->bias_v + (arm->bias_w + arm->axis_W * arm->rate).cross(p_W - arm->pivot_W);
-}
-
 // Whether a servo acts otherwise than was assumed: one that holds would need more than its torque, or one that is at
 // the end of its torque is faster than its target. Then joints say what they do now; begin_anew() has to follow.
 bool settle_servos(ArticulatedBody& body);

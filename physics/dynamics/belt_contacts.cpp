@@ -137,17 +137,14 @@ class BoxTouches {
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
     box_side_ = c.y() > 0 ? 1 : -1;
     if (overlap_ <= 0) return;
-    for (std::size_t k = 0; k < corner_.size(); ++k) {
-      corner_[k] = c;
-      for (int j = 0; j < 3; ++j) corner_[k] += box_.axes.getColumn(j) * (k >> j & 1 ? box_.half[j] : -box_.half[j]);
-    }
+    set_corners();
 
     // Faces, edges and corners within the belt's width.
     const Slices s = slices(belt_, kBoxSlices);
     faces(s);
     for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
       const BoxEdge edge = box_edge(e);
-      if (!near(corner_[edge.from], corner_[edge.to])) continue;
+      if (beyond_[edge.from] & beyond_[edge.to]) continue;  // both beyond one side
       edge_in_slices(edge, e, s);
       inner_edge(edge, e, s);
     }
@@ -175,6 +172,21 @@ class BoxTouches {
         if (in_plane < kSideways) continue;
         use(j, sign, normal, btVector3(normal.x() / in_plane, 0, normal.z() / in_plane));
       }
+    }
+  }
+
+  // Corners, and beyond which of the sides of the belt's bounding box each lies, a bit for a side.
+  void set_corners() {
+    const btVector3 along[3] = {box_.axes.getColumn(0) * box_.half[0], box_.axes.getColumn(1) * box_.half[1],
+                                box_.axes.getColumn(2) * box_.half[2]};
+    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
+    const btScalar back = -belt_.radius[0] - kTouching_m, front = belt_.length + belt_.radius[1] + kTouching_m;
+    for (std::size_t k = 0; k < corner_.size(); ++k) {
+      btVector3& p = corner_[k];
+      p = box_.center;
+      for (std::size_t j = 0; j < 3; ++j) p = k >> j & 1 ? p + along[j] : p - along[j];
+      beyond_[k] = (p.x() < back ? 1u : 0) | (p.x() > front ? 2u : 0) | (p.z() < -r ? 4u : 0) | (p.z() > r ? 8u : 0) |
+                   (p.y() < -belt_.half_width ? 16u : 0) | (p.y() > belt_.half_width ? 32u : 0);
     }
   }
 
@@ -246,15 +258,6 @@ class BoxTouches {
         lies_across(corner_[edge.to] - corner_[edge.from]), id);
   }
 
-  // Whether the bounding box of a line overlaps that of the belt.
-  bool near(const btVector3& p0, const btVector3& p1) const {
-    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
-    return std::max(p0.x(), p1.x()) >= -belt_.radius[0] - kTouching_m &&
-           std::min(p0.x(), p1.x()) <= belt_.length + belt_.radius[1] + kTouching_m && std::max(p0.z(), p1.z()) >= -r &&
-           std::min(p0.z(), p1.z()) <= r && std::max(p0.y(), p1.y()) >= -belt_.half_width &&
-           std::min(p0.y(), p1.y()) <= belt_.half_width;
-  }
-
   // The points where an edge crosses the slices.
   void edge_in_slices(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
     const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
@@ -270,8 +273,8 @@ class BoxTouches {
   // Corners within the belt's width, pressed into the outline from outside of the box.
   void corners() {
     for (std::uint32_t k = 0; k < 8; ++k) {
+      if (beyond_[k]) continue;
       const btVector3& p = corner_[k];
-      if (btFabs(p.y()) > belt_.half_width) continue;
       const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
       if (at.distance > kTouching_m || at.distance < -deepest_m_) continue;
       const btVector3 normal = -at.outward;
@@ -360,6 +363,7 @@ class BoxTouches {
   std::size_t first_;
   btScalar deepest_m_;
   std::array<btVector3, 8> corner_;
+  std::array<unsigned, 8> beyond_;
   btScalar overlap_ = 0, box_side_ = 1;
 };
 

@@ -82,7 +82,8 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
     pair_->body = body.getCollisionObject();
     pair_->ground = ground.getCollisionObject();
     pair_->belt = tag_of(body)->belt;
-    pair_->X_WT = body.getWorldTransform() * btTransform(btMatrix3x3::getIdentity(), pair_->belt->p_BodyT);
+    const btTransform& X_WBody = body.getWorldTransform();
+    pair_->X_WT = btTransform(X_WBody.getBasis(), X_WBody * pair_->belt->p_BodyT);
     owner_.touches_.clear();
     touch(ground, pair_->X_WT.inverse() * ground.getWorldTransform());
     remember();

@@ -2,14 +2,11 @@
 // belts that run through it. docs/physics.md has the equations and why they are so.
 #pragma once
 
-#include <span>
-#include <vector>
+#include <algorithm>
 
-#include "physics/dynamics/articulated_body.hpp"
 #include "physics/dynamics/bullet.hpp"
-#include "physics/dynamics/friction_creep.hpp"
+#include "physics/dynamics/contact_patch.hpp"
 #include "physics/dynamics/shear.hpp"
-#include "physics/dynamics/surface.hpp"
 
 namespace kenaf::physics {
 
@@ -18,28 +15,7 @@ struct ContactSettings {
   double damping_nspm;
 };
 
-// What a contact moves. arm: on which it is, of that body; null: on the base.
-struct ContactSide {
-  ArticulatedBody* body = nullptr;  // null: it is fixed
-  Arm* arm = nullptr;
-};
-
-// The two bodies that touch. All velocities are those of body A relative to body B; A is never fixed.
-struct Meeting {
-  const Collider *collider_a, *collider_b;
-  ContactSide side_a, side_b;
-  const Surface *surface_a, *surface_b;
-  // The axes about which their belts turn, in W, and the share of the belts' speed that moves their surfaces; unused
-  // without a belt.
-  btVector3 belt_axis_a, belt_axis_b;
-  btScalar driving_a, driving_b;
-  btScalar warm_start_share;  // of its friction impulse that a contact which sticks leaves to the next step
-
-  Meeting(const btCollisionObject& a, const btCollisionObject& b, const ContactSide& moves_a,
-          const ContactSide& moves_b, const Surface& on_a, const Surface& on_b);
-};
-
-// One point where they touch, from whichever algorithm.
+// One point where two bodies touch, from whichever algorithm.
 struct Touch {
   btVector3 p_W, normal_W;  // the normal points from B to A
   btScalar gap_m, weight;   // weight: factor of stiffness and damping
@@ -50,119 +26,63 @@ struct Touch {
 
 class Contact {
  public:
-  Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
+  // Starts from the stored impulses. `patch` must stay where it is.
+  Contact(const ContactPatch& patch, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
-  void warm_start();
-  // Counts it for its bodies (ArticulatedBody::contact_count), if it presses or would without the others.
-  void count() const;
+  // Reads again what depends on the patch's bodies.
+  void take_bodies();
+
+  // The changes of velocity, by contacts of this step, that the contact sees: of A, less those of B.
+  struct Seen {
+    btScalar normal;
+    Two slip;
+  };
   struct Change {  // of the impulses, with the slip that called for it
     btScalar normal;
     Two friction, slip;
   };
-  struct State {  // of A, or a change of it, by contacts
-    TwoVectors delta{};
-    btScalar arm_nms = 0, belt_ns = 0, load_ns = 0;
-  };
-  // Of contacts that all saw the same velocities.
-  struct SharedChanges {
-    struct OfRun {  // of contacts that move the same things, on fixed ground
-      const Contact* any;
-      State sum;
-    };
-    struct BetweenMoving {
-      Contact* contact;
-      Change change;
-    };
-    std::vector<OfRun> runs;
-    std::vector<BetweenMoving> between_moving;
-  };
-  // An iteration in which each contact moves an equal share of its body's mass, all by the same velocities (mass
-  // splitting: Tonge, Benevolenski, Voroshilov, "Mass splitting for jitter-free parallel rigid body simulation", 2012).
-  // What several could hold is shared evenly, whatever their order. Returns the largest squared velocity change of a
-  // body A that a contact would make alone.
-  static btScalar share(std::span<Contact> contacts, bool some_shear, SharedChanges& changes);
-  // One iteration over contacts in their order, each with what those before it have left. Returns the largest squared
-  // velocity change of a body A. `some_shear`: a contact of them may have a stretch; without, none of its cost.
-  static btScalar solve(std::span<Contact> contacts, bool some_shear);
-  // Writes the impulses to where they were taken from, to make the contact anew in this step.
-  void keep_impulses() const;
-  // After the last iteration. Where the contact slides, its slip gives its friction; where it sticks, its friction
-  // fades.
-  bool sticks() const;
-  void fade();
-  // Whether its friction moves A's base and nothing else: a belt or an arm that yields would take a part.
-  bool moves_base_alone() const;
-  // Of such a contact: what it loses, to be called before it fades; its part in giving back; and what it gets.
-  void lose_to(FrictionCreep& creep) const;
-  void add_spring_to(FrictionCreep& creep) const;
-  void take_back(const TwoVectors& given_back);
-
-  const ArticulatedBody* body_a() const { return a_.body; }
-  const Collider& collider_a() const { return *collider_a_; }
-  const Collider& collider_b() const { return *collider_b_; }
-  // Of the robots that these belong to.
-  TouchingPart part_a() const { return part_a_; }
-  TouchingPart part_b() const { return part_b_; }
-  const btVector3& p_W() const { return p_W_; }
-  // Newton seconds of the step: normal and friction. B has the opposite.
-  btVector3 impulse_on_a_W() const {
-    return normal_W_ * normal_impulse_ + vector_of(tangents_W_, 0) * friction_impulse_[0] +
-           vector_of(tangents_W_, 1) * friction_impulse_[1];
+  // What the contact would do if nothing else changed and it alone moved `share` of the bodies' masses. `kSomeShear`:
+  // it may have a stretch; without, none of its cost.
+  template <bool kSomeShear>
+  Change wanted_change(const Seen& seen, btScalar share) const;
+  void make(const Change& change) {
+    normal_impulse_ += change.normal;
+    friction_impulse_ += change.friction;
+    last_slip_ = change.slip;
   }
+
+  // Whether it presses, or would without the others.
+  bool may_press() const { return normal_impulse_ > 0 || normal_velocity_ < give_velocity_; }
   bool pressed() const { return normal_impulse_ > 0; }
+  bool sticks() const {
+    constexpr btScalar kSlides_mps = 1e-4;  // as kStanding_mps of shear.cpp
+    return pressed() && last_slip_[0] * last_slip_[0] + last_slip_[1] * last_slip_[1] <= kSlides_mps * kSlides_mps;
+  }
+  // After the last iteration. Where the contact slides, its slip gives its friction; where it sticks, its friction
+  // fades, or is changed otherwise.
+  void set_friction(Two impulse) { friction_impulse_ = impulse; }
+  // Writes the impulses to where they were taken from.
+  void keep_impulses() const;
+
+  const ContactPatch& patch() const { return *patch_; }
+  const btVector3& p_W() const { return p_W_; }
+  const PlaceInPatch& from_a() const { return from_a_; }
+  const PlaceInPatch& from_b() const { return from_b_; }
+  // Newton seconds of the step.
+  btScalar normal_impulse() const { return normal_impulse_; }
+  Two friction_impulse() const { return friction_impulse_; }
+  btVector3 impulse_on_a_W() const { return patch_->in_W(normal_impulse_, friction_impulse_); }
 
  private:
-  // The state of A that a contact changes.
-  struct Moved {
-    TwoVectors& delta;
-    btScalar &arm_nms, &belt_ns, &load_ns;
-    btScalar arm_mobility, belt_mobility;
-
-    State state() const { return {delta, arm_nms, belt_ns, load_ns}; }
-  };
-  // One body's part in the three rows normal, along, across.
-  struct Rows {
-    TwoVectors row[3];  // row velocity for a unit velocity at C of the body, with what its arm's rate follows of it
-    TwoVectors response[3];  // velocity change at C for a unit impulse
-    btScalar lever = 0;      // of the normal about the arm's axis, m
-    Two levers{0, 0};        // of the tangents
-  };
-  struct Mobility;
-  static Mobility set_rows(Rows& rows, const ContactSide& side, const btVector3& p_W, const btVector3& normal,
-                           const TwoVectors& tangents);
-  static Mobility mobility_of(const Rows& of, const Arm* arm);
-  Mobility merge_rows();
-  Moved in_place(State& none) const;  // `none` stands in for what A has not
-  static Moved moved(State& state, const Moved& like) {
-    return {state.delta, state.arm_nms, state.belt_ns, state.load_ns, like.arm_mobility, like.belt_mobility};
-  }
-  static std::span<Contact> run_at_front(std::span<Contact> contacts);
-  bool on_ground() const { return !b_.body && !belt_b_; }
-  template <bool kSomeShear>
-  static btScalar solve_each(std::span<Contact> contacts);
-  template <bool kSomeShear>
-  static btScalar share_each(std::span<Contact> contacts, SharedChanges& changes);
-  // What the contact would do if nothing else changed and it alone moved `share` of the bodies' masses.
-  template <bool kOnGround, bool kSomeShear>
-  Change wanted_change(const Moved& a, btScalar share) const;
-  template <bool kOnGround>
-  void make(const Change& change, const Moved& a);
-  btScalar residual_of(const Change& change) const;
-  template <bool kOnGround>
-  void apply(Moved a, btScalar normal, Two friction);
   // The friction impulses with all of the coefficient, and with the share that has built up.
   Two coulomb_friction(Two slip, btScalar normal) const;
   Two sheared_friction(Two slip, btScalar normal, btScalar share) const;
 
-  ContactSide a_, b_;
-  Belt *belt_a_, *belt_b_;
-  Rows rows_a_, rows_b_;  // B's: unused if it is fixed
-  btScalar inverse_mass_a_;
-  // Friction quantities: along in lane 0, across in lane 1.
+  const ContactPatch* patch_;
+  PlaceInPatch from_a_, from_b_;
   btScalar normal_impulse_;
-  Two friction_impulse_;
+  Two friction_impulse_;      // as all of friction, along in lane 0 and across in lane 1
   Two last_slip_{0, 0};       // before the last change
-  btScalar fading_;           // the share of a friction that sticks which is left for the next step
   btScalar normal_velocity_;  // before any impulse of this step
   Two slip_;
   btScalar normal_mobility_, normal_mass_, softness_, give_velocity_;
@@ -171,12 +91,43 @@ class Contact {
   Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu
   Two mu_, inverse_mu_;
   ShearStretch stretch_;
-  Two gain_a_, gain_b_;  // slip for a unit belt speed, and push on the belt for a unit impulse; 0 without a belt
   btScalar* stored_impulse_[3];
-  const Collider *collider_a_, *collider_b_;
-  btVector3 p_W_, normal_W_;
-  TwoVectors tangents_W_;
-  TouchingPart part_a_, part_b_;
+  btVector3 p_W_;
 };
+
+[[gnu::always_inline]] inline Two Contact::coulomb_friction(Two slip, btScalar normal) const {
+  // Sticking: the impulse that stops the slip, if it lies within the limit ellipse.
+  const Two friction = friction_impulse_ - stick_[0] * slip[0] - stick_[1] * slip[1];
+  const Two scaled = friction * inverse_mu_;
+  if (scaled[0] * scaled[0] + scaled[1] * scaled[1] <= normal * normal) return friction;
+  // Sliding: projected gradient step, q - mu slip / eigenvalue, then back onto the circle of radius p_normal. Its fixed
+  // point is the impulse of maximum dissipation: there the ellipse's normal points against the slip.
+  const Two q = friction_impulse_ * inverse_mu_ - slide_step_ * slip;
+  const btScalar length = btSqrt(q[0] * q[0] + q[1] * q[1]);
+  const btScalar scale = length > normal ? normal / length : 1;
+  return q * scale * mu_;
+}
+
+template <bool kSomeShear>
+[[gnu::always_inline]] inline Contact::Change Contact::wanted_change(const Seen& seen, btScalar share) const {
+  // Normal: one Newton step of v - give_velocity + softness p = 0, clamped to p >= 0. A contact that is and stays open
+  // changes nothing.
+  const btScalar velocity = normal_velocity_ + seen.normal;
+  const btScalar mass = share == 1 ? normal_mass_ : share / (normal_mobility_ + share * softness_);
+  const btScalar normal =
+      std::max(normal_impulse_ - (velocity - give_velocity_ + softness_ * normal_impulse_) * mass, btScalar(0));
+  const btScalar normal_change = normal - normal_impulse_;
+  if (normal <= 0 && normal_impulse_ <= 0 && friction_impulse_[0] == 0 && friction_impulse_[1] == 0)
+    return {0, Two{0, 0}, Two{0, 0}};
+
+  // Friction: the slip with the normal's change in it.
+  Two friction{0, 0}, slip{0, 0};
+  if (normal > 0) {
+    slip = slip_ + seen.slip + normal_to_slip_ * normal_change;
+    friction =
+        kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal, share) : coulomb_friction(share * slip, normal);
+  }
+  return {normal_change, friction - friction_impulse_, slip};
+}
 
 }  // namespace kenaf::physics

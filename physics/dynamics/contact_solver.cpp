@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "physics/dynamics/contact_iterations.hpp"
+
 namespace kenaf::physics {
 namespace {
 
@@ -16,9 +18,7 @@ const Surface& surface_of(const btCollisionObject& body, int child) {
 void ContactSolver::add_belt(Belt* belt, const btRigidBody* body) {
   belts_.push_back({belt, body});
   contacts_.reserve(kManyContacts * belts_.size());
-  contacts_anew_.reserve(kManyContacts * belts_.size());
-  changes_.runs.reserve(kManyContacts * belts_.size());
-  changes_.between_moving.reserve(kManyContacts * belts_.size());
+  patches_.reserve(kManyContacts * belts_.size());
   touching_.reserve(kManyContacts * belts_.size());
   touching_by_group_.make_room(kManyContacts * belts_.size());
   belt_ground_.make_room(kManyPairs * belts_.size());
@@ -30,8 +30,9 @@ void ContactSolver::remove_belt(Belt* belt) {
 
 void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
   const void* collider = object.getUserPointer();
-  std::erase_if(contacts_,
-                [collider](const Contact& c) { return &c.collider_a() == collider || &c.collider_b() == collider; });
+  std::erase_if(contacts_, [collider](const Contact& c) {
+    return c.patch().collider_a == collider || c.patch().collider_b == collider;
+  });
 }
 
 void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
@@ -41,12 +42,14 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   find_groups(dispatcher);
   for (const auto& [belt, body] : belts_) start_step(*belt, info.m_timeStep);
   make_contacts(dispatcher, info.m_timeStep);
-  for (Contact& contact : contacts_) {
-    contact.count();
-    contact.warm_start();
+  for (const Contact& contact : contacts_) {
+    if (!contact.may_press()) continue;
+    for (const BodyInPatch* of : {&contact.patch().a, &contact.patch().b})
+      if (of->moves.body) ++of->moves.body->contact_count;
   }
+  warm_start(patches_, contacts_);
 
-  for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, dispatcher, info);
+  for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, info);
 
   // Impulses to where the next step finds them, velocities to Bullet.
   let_friction_creep();
@@ -135,25 +138,39 @@ void ContactSolver::find_groups(btDispatcher& dispatcher) {
 }
 
 void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) {
+  // Room for all of them, so that no patch moves once a contact points to it.
+  const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
+  const auto manifold = [&](std::size_t number) -> btPersistentManifold& {
+    return *dispatcher.getManifoldByIndexInternal(static_cast<int>(number));
+  };
+  std::size_t count = 0;
+  for (const std::size_t number : touching_)
+    count += number < manifolds ? static_cast<std::size_t>(manifold(number).getNumContacts())
+                                : belt_ground_.pairs()[number - manifolds]->contacts.size();
   contacts_.clear();
+  patches_.clear();
+  contacts_.reserve(count);
+  patches_.reserve(count);
+
   some_shear_ = false;
   contacts_end_.clear();
+  patches_end_.clear();
   for (std::size_t group = 0; group < groups_.count(); ++group) {
-    add_contacts(group, dispatcher, time_step, contacts_);
+    for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
+      const std::size_t number = touching_[touching_by_group_.all()[i]];
+      if (number < manifolds)
+        add_manifold(manifold(number), time_step);
+      else
+        add_belt_pair(*belt_ground_.pairs()[number - manifolds], time_step);
+    }
     contacts_end_.push_back(contacts_.size());
+    patches_end_.push_back(patches_.size());
   }
 }
 
-void ContactSolver::add_contacts(std::size_t group, btDispatcher& dispatcher, btScalar time_step,
-                                 std::vector<Contact>& to) {
-  const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
-  for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
-    const std::size_t number = touching_[touching_by_group_.all()[i]];
-    if (number < manifolds)
-      add_manifold(*dispatcher.getManifoldByIndexInternal(static_cast<int>(number)), time_step, to);
-    else
-      add_belt_pair(*belt_ground_.pairs()[number - manifolds], time_step, to);
-  }
+std::span<ContactPatch> ContactSolver::patches_of(std::size_t group) {
+  const std::size_t first = group == 0 ? 0 : patches_end_[group - 1];
+  return std::span(patches_).subspan(first, patches_end_[group] - first);
 }
 
 std::span<Contact> ContactSolver::contacts_of(std::size_t group) {
@@ -166,20 +183,20 @@ std::span<Contact> ContactSolver::contacts_of(std::size_t group) {
 // determined, and one after the other the first track would pull alone. At which limits motors and servos
 // are is looked at by the impulses to start from, then on the way and at the end; where it is not what was assumed, the
 // group begins anew with the impulses that it has.
-void ContactSolver::solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info) {
+void ContactSolver::solve_group(std::size_t group, const btContactSolverInfo& info) {
   constexpr int kIterationsToLook = 3;
   // So many iterations, and left and right track pull alike within 1 %.
   constexpr int kShared = 4;
   constexpr int kMostTimesAnew = 8;
   solve_friction_of_belts(group);
-  if (settle_motors(group)) make_anew(group, dispatcher, info.m_timeStep);
+  if (settle_motors(group)) make_anew(group);
   int times_anew = 0;
   for (int i = 1; i <= info.m_numIterations; ++i) {
     const bool solved = iterate(group, i <= kShared ? Iteration::shared : Iteration::one_by_one) <=
                         info.m_leastSquaresResidualThreshold;
     const bool look = solved || i == info.m_numIterations || i % kIterationsToLook == 0;
     if (look && times_anew < kMostTimesAnew && settle_motors(group)) {
-      make_anew(group, dispatcher, info.m_timeStep);
+      make_anew(group);
       ++times_anew;
       i = 0;
     } else if (solved) {
@@ -197,9 +214,8 @@ btScalar ContactSolver::solve_friction_of_belts(std::size_t group) {
 
 btScalar ContactSolver::iterate(std::size_t group, Iteration how) {
   const btScalar residual = solve_friction_of_belts(group);
-  const std::span<Contact> contacts = contacts_of(group);
-  return std::max(residual, how == Iteration::shared ? Contact::share(contacts, some_shear_, changes_)
-                                                     : Contact::solve(contacts, some_shear_));
+  const auto iteration = how == Iteration::shared ? share_evenly : solve_in_turn;
+  return std::max(residual, iteration(patches_of(group), contacts_of(group), some_shear_));
 }
 
 bool ContactSolver::settle_motors(std::size_t group) {
@@ -211,49 +227,72 @@ bool ContactSolver::settle_motors(std::size_t group) {
   return changed;
 }
 
-void ContactSolver::make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step) {
-  const std::span<Contact> contacts = contacts_of(group);
-  for (const Contact& contact : contacts) contact.keep_impulses();
+void ContactSolver::make_anew(std::size_t group) {
   for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
     begin_anew(*belts_[belts_by_group_.all()[i]].belt);
   for (std::size_t i = bodies_by_group_.begin_of(group); i < bodies_by_group_.end_of(group); ++i)
     begin_anew(bodies_[bodies_by_group_.all()[i]]);
-  contacts_anew_.clear();
-  add_contacts(group, dispatcher, time_step, contacts_anew_);
-  std::ranges::copy(contacts_anew_, contacts.begin());
-  for (Contact& contact : contacts) contact.warm_start();
+  for (ContactPatch& patch : patches_of(group)) patch.take_bodies();
+  for (Contact& contact : contacts_of(group)) contact.take_bodies();
+  warm_start(patches_of(group), contacts_of(group));
 }
 
 void ContactSolver::let_friction_creep() {
   creeps_.assign(bodies_.size(), {});
   given_back_.resize(bodies_.size());
-  const auto creep_of = [&](const Contact& contact) -> FrictionCreep& {
-    return creeps_[static_cast<std::size_t>(contact.body_a() - bodies_.data())];
-  };
-  const auto each_held = [&](const auto& use) {
-    for (Contact& contact : contacts_)
-      if (contact.sticks() && contact.moves_base_alone()) use(contact, creep_of(contact));
+  const auto number_of = [&](const ContactPatch& patch) {
+    return static_cast<std::size_t>(patch.a.moves.body - bodies_.data());
   };
 
-  each_held([](Contact& contact, FrictionCreep& creep) { contact.lose_to(creep); });
-  for (Contact& contact : contacts_)
-    if (contact.sticks()) contact.fade();
+  // What contacts that stick lose, and what those lose that hold a body by themselves.
+  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
+    InPatch lost{};
+    btScalar pressing_ns = 0;
+    for (Contact& contact : contacts) {
+      if (!contact.sticks()) continue;
+      lost = lost + impulse_at(contact.from_a(), 0, (1 - patch.fading) * contact.friction_impulse());
+      pressing_ns += contact.normal_impulse();
+      contact.set_friction(patch.fading * contact.friction_impulse());
+    }
+    if (patch.moves_base_alone()) creeps_[number_of(patch)].lose(patch, lost, pressing_ns);
+  });
   if (std::ranges::none_of(creeps_, &FrictionCreep::matters)) return;
 
-  each_held([](Contact& contact, FrictionCreep& creep) {
-    if (creep.matters()) contact.add_spring_to(creep);
+  // What holds a body comes back.
+  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
+    FrictionCreep& creep = creeps_[number_of(patch)];
+    if (!patch.moves_base_alone() || !creep.matters()) return;
+    SpringsInPatch springs;
+    for (const Contact& contact : contacts)
+      if (contact.sticks()) springs.add(contact.from_a(), contact.normal_impulse());
+    creep.add_springs(patch, springs);
   });
   std::ranges::transform(creeps_, given_back_.begin(), [](const FrictionCreep& creep) {
     return creep.matters() ? creep.given_back() : TwoVectors{};
   });
-  each_held([&](Contact& contact, const FrictionCreep& creep) {
-    contact.take_back(given_back_[static_cast<std::size_t>(&creep - creeps_.data())]);
+  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
+    if (!patch.moves_base_alone()) return;
+    const InPatch given_back = patch.in_patch(given_back_[number_of(patch)]);
+    for (Contact& contact : contacts)
+      if (contact.sticks())
+        contact.set_friction(contact.friction_impulse() +
+                             contact.normal_impulse() * tangential_velocity(given_back, contact.from_a()));
   });
 }
 
-void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to) {
+void ContactSolver::add_contact(const Meeting& meeting, bool same_meeting, const Touch& touch, btScalar time_step) {
+  constexpr btScalar kSameSquared = 1e-20;  // of the difference of two unit normals
+  if (!same_meeting || patches_.back().holds_lugs != touch.holds_lugs ||
+      (patches_.back().normal_W - touch.normal_W).length2() > kSameSquared)
+    patches_.emplace_back(meeting, touch.normal_W, touch.holds_lugs);
+  contacts_.emplace_back(patches_.back(), touch, settings_, time_step);
+  ++patches_.back().contact_count;
+}
+
+void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step) {
   const btCollisionObject *body0 = manifold.getBody0(), *body1 = manifold.getBody1();
   const ContactSide side0 = side_of(*body0), side1 = side_of(*body1);
+  const Surface *last0 = nullptr, *last1 = nullptr;
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     btManifoldPoint& point = manifold.getContactPoint(i);
     const Surface& surface0 = surface_of(*body0, point.m_index0);
@@ -270,15 +309,18 @@ void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_s
                       {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1, &point.m_appliedImpulseLateral2}};
     const Meeting meeting = side0.body ? Meeting(*body0, *body1, side0, side1, surface0, surface1)
                                        : Meeting(*body1, *body0, side1, {}, surface1, surface0);
-    to.emplace_back(meeting, touch, settings_, time_step);
+    add_contact(meeting, last0 == &surface0 && last1 == &surface1, touch, time_step);
+    last0 = &surface0;
+    last1 = &surface1;
   }
 }
 
-void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step, std::vector<Contact>& to) {
+void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
   const Shearing shearing = shearing_of(*pair.belt, belt_ground_.pairs());
   some_shear_ |= shearing.rate > 0;
   const Meeting meeting(*pair.body, *pair.ground, side_of(*pair.body), side_of(*pair.ground), pair.belt->surface,
                         surface_of(*pair.ground, 0));
+  bool first = true;
   for (BeltContact& contact : pair.contacts) {
     const BeltTouch& at = contact.touch;
     const Touch touch{pair.X_WT * at.p_T,
@@ -288,7 +330,8 @@ void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step, std::vecto
                       at.holds_lugs,
                       {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]},
                       shearing.rate > 0 ? stretch_of(*pair.belt, at, shearing) : ShearStretch{}};
-    to.emplace_back(meeting, touch, settings_, time_step);
+    add_contact(meeting, !first, touch, time_step);
+    first = false;
   }
 }
 

@@ -11,6 +11,8 @@
 #include "physics/dynamics/body_groups.hpp"
 #include "physics/dynamics/bullet.hpp"
 #include "physics/dynamics/contact.hpp"
+#include "physics/dynamics/contact_patch.hpp"
+#include "physics/dynamics/friction_creep.hpp"
 #include "physics/dynamics/surface.hpp"
 
 namespace kenaf::physics {
@@ -54,18 +56,20 @@ class ContactSolver {
   // Fills groups_ and the lists of bodies, belts and touching pairs by group.
   void find_groups(btDispatcher& dispatcher);
   void make_contacts(btDispatcher& dispatcher, btScalar time_step);
-  void solve_group(std::size_t group, btDispatcher& dispatcher, const btContactSolverInfo& info);
+  void solve_group(std::size_t group, const btContactSolverInfo& info);
   btScalar solve_friction_of_belts(std::size_t group);
   enum class Iteration { shared, one_by_one };
   btScalar iterate(std::size_t group, Iteration how);  // returns the largest squared velocity change
   bool settle_motors(std::size_t group);               // of belts, and servos
   // Bodies, belts and contacts of the group for motors at other limits, with the contacts' impulses as they are.
-  void make_anew(std::size_t group, btDispatcher& dispatcher, btScalar time_step);
+  void make_anew(std::size_t group);
   void let_friction_creep();  // friction_creep.hpp, by all contacts
+  std::span<ContactPatch> patches_of(std::size_t group);
   std::span<Contact> contacts_of(std::size_t group);
-  void add_contacts(std::size_t group, btDispatcher& dispatcher, btScalar time_step, std::vector<Contact>& to);
-  void add_manifold(btPersistentManifold& manifold, btScalar time_step, std::vector<Contact>& to);
-  void add_belt_pair(BeltPair& pair, btScalar time_step, std::vector<Contact>& to);
+  void add_manifold(btPersistentManifold& manifold, btScalar time_step);
+  void add_belt_pair(BeltPair& pair, btScalar time_step);
+  // Into the last patch, if that is of the same meeting and has the same normal, or into one of its own.
+  void add_contact(const Meeting& meeting, bool same_meeting, const Touch& touch, btScalar time_step);
 
   ContactSettings settings_;
   BeltGround& belt_ground_;
@@ -79,13 +83,13 @@ class ContactSolver {
   PlacesByGroup bodies_by_group_, belts_by_group_, touching_by_group_;
   std::vector<std::size_t>
       touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
-  // Group by group.
-  std::vector<Contact> contacts_, contacts_anew_;
-  Contact::SharedChanges changes_;
-  std::vector<FrictionCreep> creeps_;  // of each of bodies_
+  // Group by group. The patches stay where they are, as contacts point to them.
+  std::vector<ContactPatch> patches_;
+  std::vector<Contact> contacts_;
+  std::vector<std::size_t> patches_end_, contacts_end_;  // of each group
+  std::vector<FrictionCreep> creeps_;                    // of each of bodies_
   std::vector<TwoVectors> given_back_;
-  bool some_shear_ = false;                // of contacts_
-  std::vector<std::size_t> contacts_end_;  // of each group
+  bool some_shear_ = false;  // of contacts_
 };
 
 }  // namespace kenaf::physics

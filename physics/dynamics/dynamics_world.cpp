@@ -13,33 +13,27 @@ btTransform pose_after(const btRigidBody& body, btScalar time_step) {
   return X;
 }
 
-bool contains(const btBroadphaseProxy& box, const btVector3& low_W, const btVector3& high_W) {
-  for (int k = 0; k < 3; ++k)
-    if (!(box.m_aabbMin[k] <= low_W[k] && high_W[k] <= box.m_aabbMax[k])) return false;
-  return true;
-}
-
 }  // namespace
 
-// A body's box in the broad phase is larger than the body by kSpare_m, and stays until the body leaves it.
+// As btCollisionWorld::updateSingleAabb does it, but without where a body will be. A fixed body keeps its box, and has
+// to say so: the broad phase takes what is silent for two steps to another tree, which allocates.
 void DynamicsWorld::updateAabbs() {
-  constexpr btScalar kSpare_m = 0.005;           // at 0.2 m/s a new box each 25 steps of 1 ms
-  constexpr btScalar kLargestSquared_m2 = 1e12;  // as in btCollisionWorld::updateSingleAabb
+  constexpr btScalar kLargestSquared_m2 = 1e12;
   const btVector3 touching(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
-  const btVector3 spare(kSpare_m, kSpare_m, kSpare_m);
-  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-    btRigidBody& body = *m_nonStaticRigidBodies[i];
-    if (!body.isActive()) continue;
-    btBroadphaseProxy& box = *body.getBroadphaseProxy();
+  for (int i = 0; i < m_collisionObjects.size(); ++i) {
+    btCollisionObject& object = *m_collisionObjects[i];
+    btBroadphaseProxy& box = *object.getBroadphaseHandle();
+    if (object.isStaticObject()) {
+      m_broadphasePairCache->setAabb(&box, box.m_aabbMin, box.m_aabbMax, m_dispatcher1);
+      continue;
+    }
+    if (!object.isActive()) continue;
     btVector3 low_W, high_W;
-    body.getCollisionShape()->getAabb(body.getWorldTransform(), low_W, high_W);
-    low_W -= touching;
-    high_W += touching;
-    if (contains(box, low_W, high_W)) continue;
+    object.getCollisionShape()->getAabb(object.getWorldTransform(), low_W, high_W);
     if ((high_W - low_W).length2() < kLargestSquared_m2)
-      m_broadphasePairCache->setAabb(&box, low_W - spare, high_W + spare, m_dispatcher1);
+      m_broadphasePairCache->setAabb(&box, low_W - touching, high_W + touching, m_dispatcher1);
     else
-      updateSingleAabb(&body);  // deactivates it
+      updateSingleAabb(&object);  // deactivates it
   }
 }
 

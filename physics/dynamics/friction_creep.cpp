@@ -13,8 +13,23 @@ Vector6 to_vector6(const TwoVectors& row) {
 
 }  // namespace
 
-void FrictionCreep::lose(const TwoVectors (&rows)[2], Two lost_ns, btScalar pressing_ns) {
-  lost_ += rows[0] * lost_ns[0] + rows[1] * lost_ns[1];
+// With r = (r_0, r_1, h) the rows of along and across are (1, 0, 0, 0, h, -r_1) and (0, 1, 0, -h, 0, r_0).
+Eigen::Matrix<double, 6, 6> SpringsInPatch::stiffness() const {
+  Eigen::Matrix<double, 6, 6> k = Eigen::Matrix<double, 6, 6>::Zero();
+  k(0, 0) = k(1, 1) = pressing_ns_;
+  k(0, 4) = k(4, 0) = first_height_;
+  k(1, 3) = k(3, 1) = -first_height_;
+  k(0, 5) = k(5, 0) = first_[0];
+  k(1, 5) = k(5, 1) = first_[1];
+  k(3, 3) = k(4, 4) = second_height_;
+  k(3, 5) = k(5, 3) = -with_height_[1];
+  k(4, 5) = k(5, 4) = with_height_[0];
+  k(5, 5) = second_;
+  return k;
+}
+
+void FrictionCreep::lose(const ContactPatch& patch, const InPatch& lost_ns, btScalar pressing_ns) {
+  lost_ += patch.in_W(lost_ns);
   pressing_ns_ += pressing_ns;
 }
 
@@ -23,11 +38,14 @@ bool FrictionCreep::matters() const {
   return sum_of_lanes(dot(lost_, lost_)) > kTrifle * kTrifle * pressing_ns_ * pressing_ns_;
 }
 
-void FrictionCreep::add_spring(const TwoVectors (&rows)[2], btScalar pressing_ns) {
-  for (const TwoVectors& row : rows) {
-    const Vector6 j = to_vector6(row);
-    stiffness_.noalias() += (pressing_ns * j) * j.transpose();
-  }
+void FrictionCreep::add_springs(const ContactPatch& patch, const SpringsInPatch& springs) {
+  Eigen::Matrix3d R_WF;
+  R_WF << patch.along_W.x(), patch.across_W.x(), patch.normal_W.x(),  //
+      patch.along_W.y(), patch.across_W.y(), patch.normal_W.y(),      //
+      patch.along_W.z(), patch.across_W.z(), patch.normal_W.z();
+  const Eigen::Matrix<double, 6, 6> in_patch = springs.stiffness();
+  for (const int i : {0, 3})
+    for (const int j : {0, 3}) stiffness_.block<3, 3>(i, j) += R_WF * in_patch.block<3, 3>(i, j) * R_WF.transpose();
 }
 
 TwoVectors FrictionCreep::given_back() const {

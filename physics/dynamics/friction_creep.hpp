@@ -8,18 +8,38 @@
 
 #include <Eigen/Core>
 
-#include "physics/dynamics/two_vectors.hpp"
+#include "physics/dynamics/contact_patch.hpp"
 
 namespace kenaf::physics {
 
+// The springs of contacts in one patch, sum p J^T J in its axes, by moments of what presses.
+class SpringsInPatch {
+ public:
+  void add(const PlaceInPatch& r, btScalar pressing_ns) {
+    const Two turned = pressing_ns * r.turned;
+    pressing_ns_ += pressing_ns;
+    first_ += turned;
+    first_height_ += pressing_ns * r.height;
+    second_ += sum_of_lanes(turned * r.turned);
+    with_height_ += turned * r.height;
+    second_height_ += pressing_ns * r.height * r.height;
+  }
+  // Linear before angular, in the patch's axes.
+  Eigen::Matrix<double, 6, 6> stiffness() const;
+
+ private:
+  btScalar pressing_ns_ = 0, first_height_ = 0, second_ = 0, second_height_ = 0;
+  Two first_{0, 0}, with_height_{0, 0};
+};
+
 class FrictionCreep {
  public:
-  // First every contact, with its rows and its impulses.
-  void lose(const TwoVectors (&rows)[2], Two lost_ns, btScalar pressing_ns);
+  // First every patch, with what its contacts lose and what presses on them.
+  void lose(const ContactPatch& patch, const InPatch& lost_ns, btScalar pressing_ns);
   // Whether what is lost is more than the iterations leave open. Where friction does not hold the body it is nothing.
   bool matters() const;
-  // Then, if it matters, every contact again; y, in the order of a row.
-  void add_spring(const TwoVectors (&rows)[2], btScalar pressing_ns);
+  // Then, if it matters, every patch again; y.
+  void add_springs(const ContactPatch& patch, const SpringsInPatch& springs);
   TwoVectors given_back() const;
 
  private:

@@ -110,7 +110,8 @@ void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const
   const bool moves = mass_kg > 0;
   try {
     world_.addRigidBody(fixture.body.get(), (moves ? kMoves : kFixed) | kind, moves ? kAll : kAll & ~(kFixed | kBoxes));
-  } catch (...) {  // Bullet may know half of it already
+    world_.updateSingleAabb(fixture.body.get());  // the box of the steps, which is larger than the one of adding
+  } catch (...) {                                 // Bullet may know half of it already
     world_.removeRigidBody(fixture.body.get());
     throw;
   }
@@ -255,7 +256,7 @@ void Scene::touches(std::vector<Touch>& out) const {
   out.clear();
   for (const Contact& contact : solver_.contacts()) {
     if (!contact.pressed()) continue;
-    const std::uint32_t a = contact.collider_a().robot, b = contact.collider_b().robot;  // 0: of no robot
+    const std::uint32_t a = contact.patch().collider_a->robot, b = contact.patch().collider_b->robot;  // 0: of no robot
     const Eigen::Vector3d p_W = from_bullet(contact.p_W());
     if (a != 0) out.push_back({RobotId{a}, p_W});
     if (b != 0 && b != a) out.push_back({RobotId{b}, p_W});
@@ -270,8 +271,9 @@ void Scene::contacts(RobotId robot, double time_step_s, std::vector<ContactPoint
     // Two of one robot's own parts may meet: then it is in the list twice, and cancels.
     const Eigen::Vector3d p_W = from_bullet(contact.p_W());
     const Eigen::Vector3d force_W_n = from_bullet(contact.impulse_on_a_W() / time_step_s);
-    if (contact.collider_a().robot == id) out.push_back({p_W, force_W_n, contact.part_a()});
-    if (contact.collider_b().robot == id) out.push_back({p_W, -force_W_n, contact.part_b()});
+    const ContactPatch& patch = contact.patch();
+    if (patch.collider_a->robot == id) out.push_back({p_W, force_W_n, patch.part_a});
+    if (patch.collider_b->robot == id) out.push_back({p_W, -force_W_n, patch.part_b});
   }
 }
 
