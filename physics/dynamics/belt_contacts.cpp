@@ -161,16 +161,21 @@ class BoxTouches {
     if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, run_place, id});
   }
 
-  // Calls use(axis, sign, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
-  // slices' plane, of unit length.
+  // Calls use(axis, sign, normal, flat, depth) for each face that is not beside the slices; `flat` is the normal's part
+  // in the slices' plane, of unit length, `depth` how far the belt reaches below the face.
   template <typename Use>
   void for_each_face(Use&& use) const {
     for (int j = 0; j < 3; ++j) {
+      const btVector3 axis = box_.axes.getColumn(j);
+      const btScalar in_plane = btSqrt(axis.x() * axis.x() + axis.z() * axis.z());
+      if (in_plane < kSideways) continue;
+      const btVector3 flat(axis.x() / in_plane, 0, axis.z() / in_plane);
+      const btScalar center = axis.dot(box_.center), across = btFabs(axis.y()) * belt_.half_width;
       for (const int sign : {-1, 1}) {
-        const btVector3 normal = box_.axes.getColumn(j) * sign;
-        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-        if (in_plane < kSideways) continue;
-        use(j, sign, normal, btVector3(normal.x() / in_plane, 0, normal.z() / in_plane));
+        // half + n . centre - the least n . p of the swept discs, whose centres are at 0 and at (length, 0, 0)
+        const btScalar lowest =
+            std::min(-in_plane * belt_.radius[0], sign * axis.x() * belt_.length - in_plane * belt_.radius[1]) - across;
+        use(j, sign, axis * sign, flat * sign, box_.half[j] + sign * center - lowest);
       }
     }
   }
@@ -190,26 +195,17 @@ class BoxTouches {
     }
   }
 
-  // How far the belt reaches below a face of axis j: half + n . centre - the least n . p of the swept discs.
-  btScalar depth_below(int j, const btVector3& normal, const btVector3& flat) const {
-    const btScalar lowest =
-        std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)), normal.dot(furthest_on_disc(belt_, 1, -flat))) -
-        btFabs(normal.y()) * belt_.half_width;
-    return box_.half[j] + normal.dot(box_.center) - lowest;
-  }
-
   // The least displacement within the slices' plane that frees the belt from the box; negative: it is free.
   btScalar depth_in_plane() const {
     btScalar least = BT_LARGE_FLOAT;
-    for_each_face([&](int j, int, const btVector3& normal, const btVector3& flat) {
-      least = std::min(least, depth_below(j, normal, flat));
-    });
+    for_each_face(
+        [&](int, int, const btVector3&, const btVector3&, btScalar depth) { least = std::min(least, depth); });
     return least;
   }
 
   void faces(const Slices& s) {
-    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat) {
-      if (depth_below(j, normal, flat) < -kTouching_m) return;
+    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat, btScalar depth) {
+      if (depth < -kTouching_m) return;
       const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
       outline_points(belt_, flat, [&](std::uint32_t place, int run_place, const btVector3& p, btScalar weight) {
         face_points(j, normal, face, s, place, run_place, p, weight);
