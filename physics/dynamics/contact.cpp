@@ -6,8 +6,7 @@
 namespace kenaf::physics {
 
 Contact::Contact(const ContactPatch& patch, const Touch& touch, const ContactSettings& settings, btScalar time_step)
-    : patch_(&patch),
-      normal_impulse_(*touch.stored_impulse[0]),
+    : normal_impulse_(*touch.stored_impulse[0]),
       friction_impulse_{*touch.stored_impulse[1], *touch.stored_impulse[2]},
       mu_(patch.mu),
       inverse_mu_(patch.inverse_mu),
@@ -24,11 +23,11 @@ Contact::Contact(const ContactPatch& patch, const Touch& touch, const ContactSet
   const btScalar damping = settings.damping_nspm * touch.weight * patch.damping_scale;
   softness_ = 1 / (time_step * (stiffness * time_step + damping));
   give_velocity_ = -stiffness * touch.gap_m * time_step * softness_;
-  take_bodies();
+  take_bodies(patch);
 }
 
-void Contact::take_bodies() {
-  const BodyInPatch &a = patch_->a, &b = patch_->b;
+void Contact::take_bodies(const ContactPatch& patch) {
+  const BodyInPatch &a = patch.a, &b = patch.b;
   normal_velocity_ = normal_velocity(a.free_motion, from_a_);
   slip_ = tangential_velocity(a.free_motion, from_a_);
   if (b.moves.body) {
@@ -39,7 +38,7 @@ void Contact::take_bodies() {
   if (b.belt) slip_ += b.gain * b.belt->base_mps;
 
   // The coupling of normal and tangents is used one way only: the effect of the normal impulse on slip.
-  const MobilityAtPlace mobility = patch_->mobility_at(from_a_, from_b_);
+  const MobilityAtPlace mobility = patch.mobility_at(from_a_, from_b_);
   normal_to_slip_ = mobility.tangents_by_normal;
   normal_mobility_ = mobility.normal;
   normal_mass_ = 1 / (mobility.normal + softness_);

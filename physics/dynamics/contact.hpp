@@ -26,11 +26,11 @@ struct Touch {
 
 class Contact {
  public:
-  // Starts from the stored impulses. `patch` must stay where it is.
+  // Starts from the stored impulses.
   Contact(const ContactPatch& patch, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
-  // Reads again what depends on the patch's bodies.
-  void take_bodies();
+  // Reads again what depends on the bodies of its patch.
+  void take_bodies(const ContactPatch& patch);
 
   // The changes of velocity, by contacts of this step, that the contact sees: of A, less those of B.
   struct Seen {
@@ -64,21 +64,18 @@ class Contact {
   // Writes the impulses to where they were taken from.
   void keep_impulses() const;
 
-  const ContactPatch& patch() const { return *patch_; }
   const btVector3& p_W() const { return p_W_; }
   const PlaceInPatch& from_a() const { return from_a_; }
   const PlaceInPatch& from_b() const { return from_b_; }
-  // Newton seconds of the step.
+  // On A; B has the opposite. Newton seconds of the step.
   btScalar normal_impulse() const { return normal_impulse_; }
   Two friction_impulse() const { return friction_impulse_; }
-  btVector3 impulse_on_a_W() const { return patch_->in_W(normal_impulse_, friction_impulse_); }
 
  private:
   // The friction impulses with all of the coefficient, and with the share that has built up.
   Two coulomb_friction(Two slip, btScalar normal) const;
   Two sheared_friction(Two slip, btScalar normal, btScalar share) const;
 
-  const ContactPatch* patch_;
   PlaceInPatch from_a_, from_b_;
   btScalar normal_impulse_;
   Two friction_impulse_;      // as all of friction, along in lane 0 and across in lane 1

@@ -11,10 +11,10 @@
 
 namespace kenaf::physics {
 
-// use(patch, its contacts) for each patch.
-template <typename Use>
-void for_each_patch(std::span<ContactPatch> patches, std::span<Contact> contacts, const Use& use) {
-  for (ContactPatch& patch : patches) {
+// use(patch, its contacts) for each patch; both const, or neither.
+template <typename Patch, typename PatchContact, typename Use>
+void for_each_patch(std::span<Patch> patches, std::span<PatchContact> contacts, const Use& use) {
+  for (Patch& patch : patches) {
     use(patch, contacts.first(patch.contact_count));
     contacts = contacts.subspan(patch.contact_count);
   }

@@ -30,9 +30,13 @@ void ContactSolver::remove_belt(Belt* belt) {
 
 void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
   const void* collider = object.getUserPointer();
-  std::erase_if(contacts_, [collider](const Contact& c) {
-    return c.patch().collider_a == collider || c.patch().collider_b == collider;
-  });
+  auto contact = contacts_.begin();
+  for (ContactPatch& patch : patches_) {
+    const auto end = contact + static_cast<std::ptrdiff_t>(patch.contact_count);
+    const bool forgotten = patch.collider_a == collider || patch.collider_b == collider;
+    contact = forgotten ? contacts_.erase(contact, end) : end;
+    if (forgotten) patch.contact_count = 0;
+  }
 }
 
 void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
@@ -42,11 +46,11 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   find_groups(dispatcher);
   for (const auto& [belt, body] : belts_) start_step(*belt, info.m_timeStep);
   make_contacts(dispatcher, info.m_timeStep);
-  for (const Contact& contact : contacts_) {
-    if (!contact.may_press()) continue;
-    for (const BodyInPatch* of : {&contact.patch().a, &contact.patch().b})
-      if (of->moves.body) ++of->moves.body->contact_count;
-  }
+  for_each_patch(std::span(patches_), std::span(contacts_), [](const ContactPatch& patch, std::span<Contact> contacts) {
+    const auto count = static_cast<int>(std::ranges::count_if(contacts, &Contact::may_press));
+    for (const BodyInPatch* of : {&patch.a, &patch.b})
+      if (of->moves.body) of->moves.body->contact_count += count;
+  });
   warm_start(patches_, contacts_);
 
   for (std::size_t group = 0; group < groups_.count(); ++group) solve_group(group, info);
@@ -138,20 +142,9 @@ void ContactSolver::find_groups(btDispatcher& dispatcher) {
 }
 
 void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) {
-  // Room for all of them, so that no patch moves once a contact points to it.
   const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
-  const auto manifold = [&](std::size_t number) -> btPersistentManifold& {
-    return *dispatcher.getManifoldByIndexInternal(static_cast<int>(number));
-  };
-  std::size_t count = 0;
-  for (const std::size_t number : touching_)
-    count += number < manifolds ? static_cast<std::size_t>(manifold(number).getNumContacts())
-                                : belt_ground_.pairs()[number - manifolds]->contacts.size();
   contacts_.clear();
   patches_.clear();
-  contacts_.reserve(count);
-  patches_.reserve(count);
-
   some_shear_ = false;
   contacts_end_.clear();
   patches_end_.clear();
@@ -159,7 +152,7 @@ void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) 
     for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
       const std::size_t number = touching_[touching_by_group_.all()[i]];
       if (number < manifolds)
-        add_manifold(manifold(number), time_step);
+        add_manifold(*dispatcher.getManifoldByIndexInternal(static_cast<int>(number)), time_step);
       else
         add_belt_pair(*belt_ground_.pairs()[number - manifolds], time_step);
     }
@@ -232,8 +225,10 @@ void ContactSolver::make_anew(std::size_t group) {
     begin_anew(*belts_[belts_by_group_.all()[i]].belt);
   for (std::size_t i = bodies_by_group_.begin_of(group); i < bodies_by_group_.end_of(group); ++i)
     begin_anew(bodies_[bodies_by_group_.all()[i]]);
-  for (ContactPatch& patch : patches_of(group)) patch.take_bodies();
-  for (Contact& contact : contacts_of(group)) contact.take_bodies();
+  for_each_patch(patches_of(group), contacts_of(group), [](ContactPatch& patch, std::span<Contact> contacts) {
+    patch.take_bodies();
+    for (Contact& contact : contacts) contact.take_bodies(patch);
+  });
   warm_start(patches_of(group), contacts_of(group));
 }
 
@@ -245,39 +240,42 @@ void ContactSolver::let_friction_creep() {
   };
 
   // What contacts that stick lose, and what those lose that hold a body by themselves.
-  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
-    InPatch lost{};
-    btScalar pressing_ns = 0;
-    for (Contact& contact : contacts) {
-      if (!contact.sticks()) continue;
-      lost = lost + impulse_at(contact.from_a(), 0, (1 - patch.fading) * contact.friction_impulse());
-      pressing_ns += contact.normal_impulse();
-      contact.set_friction(patch.fading * contact.friction_impulse());
-    }
-    if (patch.moves_base_alone()) creeps_[number_of(patch)].lose(patch, lost, pressing_ns);
-  });
+  for_each_patch(std::span(patches_), std::span(contacts_),
+                 [&](const ContactPatch& patch, std::span<Contact> contacts) {
+                   InPatch lost{};
+                   btScalar pressing_ns = 0;
+                   for (Contact& contact : contacts) {
+                     if (!contact.sticks()) continue;
+                     lost = lost + impulse_at(contact.from_a(), 0, (1 - patch.fading) * contact.friction_impulse());
+                     pressing_ns += contact.normal_impulse();
+                     contact.set_friction(patch.fading * contact.friction_impulse());
+                   }
+                   if (patch.moves_base_alone()) creeps_[number_of(patch)].lose(patch, lost, pressing_ns);
+                 });
   if (std::ranges::none_of(creeps_, &FrictionCreep::matters)) return;
 
   // What holds a body comes back.
-  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
-    FrictionCreep& creep = creeps_[number_of(patch)];
-    if (!patch.moves_base_alone() || !creep.matters()) return;
-    SpringsInPatch springs;
-    for (const Contact& contact : contacts)
-      if (contact.sticks()) springs.add(contact.from_a(), contact.normal_impulse());
-    creep.add_springs(patch, springs);
-  });
+  for_each_patch(std::span(patches_), std::span(contacts_),
+                 [&](const ContactPatch& patch, std::span<Contact> contacts) {
+                   FrictionCreep& creep = creeps_[number_of(patch)];
+                   if (!patch.moves_base_alone() || !creep.matters()) return;
+                   SpringsInPatch springs;
+                   for (const Contact& contact : contacts)
+                     if (contact.sticks()) springs.add(contact.from_a(), contact.normal_impulse());
+                   creep.add_springs(patch, springs);
+                 });
   std::ranges::transform(creeps_, given_back_.begin(), [](const FrictionCreep& creep) {
     return creep.matters() ? creep.given_back() : TwoVectors{};
   });
-  for_each_patch(patches_, contacts_, [&](const ContactPatch& patch, std::span<Contact> contacts) {
-    if (!patch.moves_base_alone()) return;
-    const InPatch given_back = patch.in_patch(given_back_[number_of(patch)]);
-    for (Contact& contact : contacts)
-      if (contact.sticks())
-        contact.set_friction(contact.friction_impulse() +
-                             contact.normal_impulse() * tangential_velocity(given_back, contact.from_a()));
-  });
+  for_each_patch(
+      std::span(patches_), std::span(contacts_), [&](const ContactPatch& patch, std::span<Contact> contacts) {
+        if (!patch.moves_base_alone()) return;
+        const InPatch given_back = patch.in_patch(given_back_[number_of(patch)]);
+        for (Contact& contact : contacts)
+          if (contact.sticks())
+            contact.set_friction(contact.friction_impulse() +
+                                 contact.normal_impulse() * tangential_velocity(given_back, contact.from_a()));
+      });
 }
 
 void ContactSolver::add_contact(const Meeting& meeting, bool same_meeting, const Touch& touch, btScalar time_step) {

@@ -34,8 +34,9 @@ class ContactSolver {
   // any more.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
              btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
-  // The contacts of the last step.
+  // The contacts of the last step, and their patches.
   std::span<const Contact> contacts() const { return contacts_; }
+  std::span<const ContactPatch> patches() const { return patches_; }
 
  private:
   // Room for one side of a robot, so that a step need not allocate: contacts, and pairs of a belt and an object near
@@ -83,7 +84,7 @@ class ContactSolver {
   PlacesByGroup bodies_by_group_, belts_by_group_, touching_by_group_;
   std::vector<std::size_t>
       touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
-  // Group by group. The patches stay where they are, as contacts point to them.
+  // Group by group; contacts patch by patch.
   std::vector<ContactPatch> patches_;
   std::vector<Contact> contacts_;
   std::vector<std::size_t> patches_end_, contacts_end_;  // of each group

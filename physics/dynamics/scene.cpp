@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "physics/dynamics/contact_iterations.hpp"
+#include "physics/dynamics/rays.hpp"
 #include "physics/robot_shapes.hpp"
 
 namespace kenaf::physics {
@@ -234,47 +236,41 @@ void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
 
 std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
                                       std::uint32_t ignored_robot) const {
-  struct Closest : btCollisionWorld::ClosestRayResultCallback {
-    using ClosestRayResultCallback::ClosestRayResultCallback;
-    std::uint32_t ignored = 0;
-    bool needsCollision(btBroadphaseProxy* proxy) const override {
-      const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
-      return !ignored || static_cast<const Collider*>(object->getUserPointer())->robot != ignored;
-    }
-  };
   const double length = direction_W.norm();
   if (!(length > 0) || !(max_m > 0) || !from_W.allFinite()) return std::nullopt;
   const Eigen::Vector3d to_W = from_W + direction_W * (max_m / length);
-  Closest closest(to_bullet(from_W), to_bullet(to_W));
-  closest.ignored = ignored_robot;
-  world_.rayTest(to_bullet(from_W), to_bullet(to_W), closest);
-  if (!closest.hasHit()) return std::nullopt;
-  return RayHit{closest.m_closestHitFraction * max_m, from_bullet(closest.m_hitNormalWorld)};
+  const auto meeting = first_meeting({to_bullet(from_W), to_bullet(to_W)}, broadphase_, ignored_robot);
+  if (!meeting) return std::nullopt;
+  return RayHit{meeting->fraction * max_m, from_bullet(meeting->normal)};
 }
 
 void Scene::touches(std::vector<Touch>& out) const {
   out.clear();
-  for (const Contact& contact : solver_.contacts()) {
-    if (!contact.pressed()) continue;
-    const std::uint32_t a = contact.patch().collider_a->robot, b = contact.patch().collider_b->robot;  // 0: of no robot
-    const Eigen::Vector3d p_W = from_bullet(contact.p_W());
-    if (a != 0) out.push_back({RobotId{a}, p_W});
-    if (b != 0 && b != a) out.push_back({RobotId{b}, p_W});
-  }
+  for_each_patch(solver_.patches(), solver_.contacts(), [&](const ContactPatch& patch, auto contacts) {
+    const std::uint32_t a = patch.collider_a->robot, b = patch.collider_b->robot;  // 0: of no robot
+    for (const Contact& contact : contacts) {
+      if (!contact.pressed()) continue;
+      const Eigen::Vector3d p_W = from_bullet(contact.p_W());
+      if (a != 0) out.push_back({RobotId{a}, p_W});
+      if (b != 0 && b != a) out.push_back({RobotId{b}, p_W});
+    }
+  });
 }
 
 void Scene::contacts(RobotId robot, double time_step_s, std::vector<ContactPoint>& out) const {
   out.clear();
   const auto id = static_cast<std::uint32_t>(robot);
-  for (const Contact& contact : solver_.contacts()) {
-    if (!contact.pressed()) continue;
-    // Two of one robot's own parts may meet: then it is in the list twice, and cancels.
-    const Eigen::Vector3d p_W = from_bullet(contact.p_W());
-    const Eigen::Vector3d force_W_n = from_bullet(contact.impulse_on_a_W() / time_step_s);
-    const ContactPatch& patch = contact.patch();
-    if (patch.collider_a->robot == id) out.push_back({p_W, force_W_n, patch.part_a});
-    if (patch.collider_b->robot == id) out.push_back({p_W, -force_W_n, patch.part_b});
-  }
+  for_each_patch(solver_.patches(), solver_.contacts(), [&](const ContactPatch& patch, auto contacts) {
+    for (const Contact& contact : contacts) {
+      if (!contact.pressed()) continue;
+      // Two of one robot's own parts may meet: then it is in the list twice, and cancels.
+      const Eigen::Vector3d p_W = from_bullet(contact.p_W());
+      const btVector3 impulse_W = patch.in_W(contact.normal_impulse(), contact.friction_impulse());
+      const Eigen::Vector3d force_W_n = from_bullet(impulse_W / time_step_s);
+      if (patch.collider_a->robot == id) out.push_back({p_W, force_W_n, patch.part_a});
+      if (patch.collider_b->robot == id) out.push_back({p_W, -force_W_n, patch.part_b});
+    }
+  });
 }
 
 }  // namespace kenaf::physics

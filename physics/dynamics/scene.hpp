@@ -87,7 +87,7 @@ class Scene {
   BeltGround belt_ground_;
   CompoundContacts compound_contacts_;
   PairTable pairs_;
-  btDbvtBroadphase broadphase_;
+  mutable btDbvtBroadphase broadphase_;  // rays only read it, which Bullet does not say
   ContactSolver solver_;
   DynamicsWorld world_;
   std::vector<Fixture> planes_;
