@@ -104,8 +104,9 @@ Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, const C
 
 InPatch BodyInPatch::change_by(const InPatch& impulse) const {
   const Two& turn = impulse.angular;
-  InPatch change{impulse.linear * inverse_mass, impulse.linear_n * inverse_mass,
+  InPatch change{impulse.linear * inverse_mass,
                  turn_by_along * turn[0] + turn_by_across * turn[1] + turn_by_normal * impulse.angular_n,
+                 impulse.linear_n * inverse_mass,
                  sum_of_lanes(turn_by_normal * turn) + turn_n_by_n * impulse.angular_n};
   for (std::size_t i = 0; i < loose_count; ++i) change = change + loose[i] * dot(loose[i], impulse);
   if (arm_mobility > 0) {
@@ -176,7 +177,7 @@ void ContactPatch::take_bodies() {
 
 InPatch ContactPatch::in_patch(const TwoVectors& v_W) const {
   const Two along = dot(along_W, v_W), across = dot(across_W, v_W), normal = dot(normal_W, v_W);
-  return {Two{along[0], across[0]}, normal[0], Two{along[1], across[1]}, normal[1]};
+  return {Two{along[0], across[0]}, Two{along[1], across[1]}, normal[0], normal[1]};
 }
 
 TwoVectors ContactPatch::in_W(const InPatch& v) const {

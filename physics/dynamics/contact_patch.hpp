@@ -37,19 +37,17 @@ struct Meeting {
 
 // A motion of a body, or an impulse on it with its moment, about the body's C. Along in lane 0, across in lane 1.
 struct InPatch {
-  Two linear;
-  btScalar linear_n;
-  Two angular;
-  btScalar angular_n;
+  Two linear, angular;
+  btScalar linear_n, angular_n;
 };
 inline InPatch operator+(const InPatch& a, const InPatch& b) {
-  return {a.linear + b.linear, a.linear_n + b.linear_n, a.angular + b.angular, a.angular_n + b.angular_n};
+  return {a.linear + b.linear, a.angular + b.angular, a.linear_n + b.linear_n, a.angular_n + b.angular_n};
 }
 inline InPatch operator-(const InPatch& a, const InPatch& b) {
-  return {a.linear - b.linear, a.linear_n - b.linear_n, a.angular - b.angular, a.angular_n - b.angular_n};
+  return {a.linear - b.linear, a.angular - b.angular, a.linear_n - b.linear_n, a.angular_n - b.angular_n};
 }
 inline InPatch operator*(const InPatch& a, btScalar s) {
-  return {a.linear * s, a.linear_n * s, a.angular * s, a.angular_n * s};
+  return {a.linear * s, a.angular * s, a.linear_n * s, a.angular_n * s};
 }
 inline btScalar dot(const InPatch& a, const InPatch& b) {
   return sum_of_lanes(a.linear * b.linear + a.angular * b.angular) + a.linear_n * b.linear_n +
@@ -71,7 +69,7 @@ inline btScalar normal_velocity(const InPatch& motion, const PlaceInPatch& r) {
 }
 // With the moment r x impulse.
 inline InPatch impulse_at(const PlaceInPatch& r, btScalar normal, Two friction) {
-  return {friction, normal, r.height * Two{-friction[1], friction[0]} - normal * r.turned,
+  return {friction, r.height * Two{-friction[1], friction[0]} - normal * r.turned, normal,
           sum_of_lanes(r.turned * friction)};
 }
 
@@ -97,18 +95,18 @@ struct MobilityAtPlace {
 struct BodyInPatch {
   ContactSide moves;
   Belt* belt = nullptr;
-  Two gain{};           // slip for a unit belt speed, and push on the belt for a unit impulse; 0 without a belt
-  btVector3 p_WC;       // this and the following of a body that moves
-  InPatch free_motion;  // without contacts; of the arm, if it is on one
-  btScalar inverse_mass;
-  // About C, hinges stiff: the inverse inertia's first, second and third column.
+  btScalar arm_mobility = 0;  // g; 0: no arm, or its servo holds
+  Two gain{};                 // slip for a unit belt speed, and push on the belt for a unit impulse; 0 without a belt
+
+  // Of a body that moves. The inverse inertia about C with stiff hinges, by its columns.
+  btVector3 p_WC;
   Two turn_by_along, turn_by_across, turn_by_normal;
-  btScalar turn_n_by_n;
+  btScalar turn_n_by_n, inverse_mass;
+  InPatch free_motion;                              // without contacts; of the arm, if it is on one
+  InPatch unit_rate, response;                      // u of the arm, d; of an arm that holds only u is set
   std::array<InPatch, robot::kFlipperCount> loose;  // ArticulatedBody::loose
   std::size_t loose_count = 0;
-  btScalar arm_mobility = 0;    // g; 0: no arm, or its servo holds
-  InPatch unit_rate, response;  // u of the arm, d; of an arm that holds only u is set
-  btScalar arm_alone;           // g (1 + g c . d)
+  btScalar arm_alone;  // g (1 + g c . d)
 
   PlaceInPatch place(const btVector3& r_along_across_normal) const {
     return {Two{-r_along_across_normal.y(), r_along_across_normal.x()}, r_along_across_normal.z()};
