@@ -238,9 +238,16 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
   const auto of_stage = [&](const KindSquares& squares) {
     return explained_share(weighted_rms(before, weights), weighted_rms(squares, weights), 1);
   };
+  // Errors of the numbers that predict less than none explain nothing, of any model.
+  const auto with_numbers_of_stage = [&](const Left& model) {
+    return std::max(of_stage(model.by_effects), of_stage(model.with_numbers));
+  };
   const auto of_kind = [&](const Left& model, std::size_t kind) {
-    const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
-    return explained_share(rms(before), rms(model.with_numbers), 1);
+    const auto of = [&](const KindSquares& squares) {
+      const auto rms = [kind](const KindSquares& all) { return std::sqrt(all.sum[kind] / all.bins[kind]); };
+      return explained_share(rms(before), rms(squares), 1);
+    };
+    return std::max(of(model.by_effects), of(model.with_numbers));
   };
 
   SharesWithout shares{of_stage(left.whole.by_effects), {}};
@@ -254,7 +261,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
     };
     HeldOutShares::OfEffect share;
     share.of_stage = more_than_without([&](const Left& by) { return of_stage(by.by_effects); });
-    share.beyond_numbers = more_than_without([&](const Left& by) { return of_stage(by.with_numbers); });
+    share.beyond_numbers = more_than_without(with_numbers_of_stage);
     share.model_of_stage = shares.model;
     share.shown_by_others = std::numeric_limits<double>::infinity();
     for (const std::vector<double>& of_fold : left.shown)

@@ -56,7 +56,8 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
 // runs, whichever removes more. From curves; at most 1.
 //
 // `beyond_numbers`, `of_kind` and `model_of_kind` include errors of the description's numbers in both models, as
-// estimated from the fitted runs: an effect gets no credit for what these explain as well.
+// estimated from the fitted runs, where they predict the held-out runs better than none: an effect gets no credit for
+// what these explain as well.
 struct HeldOutShares {
   // Shares in the stage, and in the kind of channels in which the effect removes most.
   struct OfEffect {
