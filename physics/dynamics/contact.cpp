@@ -13,8 +13,8 @@ Contact::Contact(const ContactPatch& patch, const Touch& touch, const ContactSet
       stretch_(touch.stretch),
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       p_W_(touch.p_W) {
-  from_a_ = patch.a.place(patch.in_patch(p_W_ - patch.a.p_WC));
-  if (patch.b.moves.body) from_b_ = patch.b.place(patch.in_patch(p_W_ - patch.b.p_WC));
+  from_a_ = place_at(patch.in_patch(p_W_ - patch.a.p_WC));
+  if (patch.b.moves.body) from_b_ = place_at(patch.in_patch(p_W_ - patch.b.p_WC));
 
   // Spring and damper, implicit: p = -h (k (gap + h v) + d v), p >= 0. Solved for v:
   //   v = -k gap / (h k + d) - p / (h (h k + d)) = give_velocity - softness p

@@ -59,6 +59,9 @@ struct PlaceInPatch {
   Two turned{};         // (-r_across, r_along)
   btScalar height = 0;  // r_normal
 };
+inline PlaceInPatch place_at(const btVector3& r) {
+  return {Two{-r.y(), r.x()}, r.z()};
+}
 
 // linear + angular x r, in its three components.
 inline Two tangential_velocity(const InPatch& motion, const PlaceInPatch& r) {
@@ -108,9 +111,6 @@ struct BodyInPatch {
   std::size_t loose_count = 0;
   btScalar arm_alone;  // g (1 + g c . d)
 
-  PlaceInPatch place(const btVector3& r_along_across_normal) const {
-    return {Two{-r_along_across_normal.y(), r_along_across_normal.x()}, r_along_across_normal.z()};
-  }
   // What its contacts see, by an impulse on it.
   InPatch change_by(const InPatch& impulse) const;
   MobilityAtPlace mobility_at(const PlaceInPatch& r) const;

@@ -118,7 +118,7 @@ TEST_CASE("A contact's mobility and what impulses change are those of the base a
     const Meeting meeting(robot.base, robot.base, a, b, robot.surface, robot.surface);
     const ContactPatch patch(meeting, btVector3(0.2, 0.1, 1).normalized(), false);
     const btVector3 p_W(0.35, 0.05, 0.1);
-    const PlaceInPatch r = patch.a.place(patch.in_patch(p_W - robot.body.p_WC));
+    const PlaceInPatch r = place_at(patch.in_patch(p_W - robot.body.p_WC));
     const btVector3 axes[3] = {patch.along_W, patch.across_W, patch.normal_W};
     CHECK(axes[0].cross(axes[1]).dot(axes[2]) == Approx(1));
 
@@ -175,7 +175,7 @@ TEST_CASE("Two arms that hold against each other have a finite, small mobility")
   const Meeting meeting(robot.base, robot.base, {&robot.body, &robot.arms[0]}, {&robot.body, &robot.arms[1]},
                         robot.surface, robot.surface);
   const ContactPatch patch(meeting, {0, 0, 1}, false);
-  const PlaceInPatch r = patch.a.place({0.1, 0.1, -0.1});
+  const PlaceInPatch r = place_at({0.1, 0.1, -0.1});
   const MobilityAtPlace m = patch.mobility_at(r, r);
   CHECK(m.normal > 0);
   CHECK(m.normal < 1e-6);
