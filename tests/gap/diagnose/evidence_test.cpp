@@ -240,6 +240,27 @@ TEST_CASE("What numbers that are a little off explain as well is no share of an 
   CHECK(shares.effects[1].of_kind > 0.2);
 }
 
+TEST_CASE("Numbers that mispredict a held-out manoeuvre take nothing away from an effect") {
+  // the voltage lacks 30 in both manoeuvres; a number that explains it in one has the other sign in the other
+  const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1)};
+  const Whole plain = world().in_channel(test::WorldChannel::battery, 1);
+  Whole turned = plain;
+  turned.tail(world().bins_of_manoeuvre()) *= -1;
+  const Whole gap = 0.5 * effects[0] + 30 * plain;
+  Measured measured(world(), gap);
+  for (const Eigen::VectorXd& group : world().by_group(30 / 0.02 * turned))
+    measured.floor.number_shapes.emplace_back(group);
+  StandingModel standing = world().fitted(effects, world().data(gap), {0});
+  standing.model.likelihood.discrepancies.numbers_off = 0.02;
+  const Folds by_manoeuvre{{0, 1}, {2, 3}};
+  const HeldOutShares::OfEffect share =
+      shares_held_out(measured.view, Passage::drive_to_body, standing, {}, by_manoeuvre, 1).effects.at(0);
+  // position and voltage have the same gap, and with the number the voltage's would be four times as large
+  CHECK(share.of_stage == Approx(0.5).margin(0.05));
+  CHECK(share.beyond_numbers == Approx(share.of_stage));
+  CHECK(share.of_kind == Approx(1).margin(0.05));
+}
+
 TEST_CASE("What is open in each run by itself is not a gap for an effect to explain") {
   // 30 in x, all of it the effect's; each run's yaw begins 5 sigma off, where it is open by 10
   const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1)};
