@@ -221,17 +221,31 @@ std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const p
   // Operator, recorders, and a recorded run's motion at its start.
   RollOut out;
   std::vector<RunRecorder> recorders;
-  for (const RobotDescription& one : measured) recorders.emplace_back(one, options);
+  double pose_after_s = 0;
+  for (const RobotDescription& one : measured) {
+    recorders.emplace_back(one, options, manoeuvre.start);
+    pose_after_s = std::max(pose_after_s, pose_needed_after_s(one.effects));
+  }
   Driver driver(manoeuvre, flippers);
   robot::Command command;
   if (manoeuvre.start && manoeuvre.start->motion)
     set_in_motion(scene, robot, *manoeuvre.start->motion,
                   manoeuvre.timed.empty() ? command : manoeuvre.timed.front().command);
 
+  const auto time_of = [&](std::uint64_t step) { return static_cast<double>(step) * options.physics.time_step_s; };
+  const auto row_time = [](double t_s) { return std::round(t_s * 1e9) / 1e9; };  // nine decimals: 0.29, not 29 * 0.01
+  const auto advance = [&](double t_s) {
+    if (manoeuvre.measured)
+      scene.world.prescribe(scene.robot,
+                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, robot, late));
+    scene.step();
+  };
+
   // At each sample, and when a replay's command is due: the next command, and a row; then a step.
   std::vector<physics::SensorSample> samples;
-  for (std::uint64_t step = 0;; ++step) {
-    const double t_s = static_cast<double>(step) * options.physics.time_step_s;
+  std::uint64_t step = 0;
+  for (;; ++step) {
+    const double t_s = time_of(step);
     const bool sample = step % per_sample == 0;
     if (sample || t_s >= driver.next_due_s()) {
       out.end = scene.world.truth(scene.robot);
@@ -242,22 +256,28 @@ std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const p
       for (std::size_t r = 0; sample && r < recorders.size(); ++r) {
         samples.clear();
         scene.world.read_sensors(scene.robot, samples, r);
-        // Nine decimals: 0.29, not 29 * 0.01.
-        recorders[r].add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
+        recorders[r].add(row_time(t_s), command, out.end, samples);
       }
       out.fault = scene.world.fault(scene.robot);
       if (!next || !out.fault.empty()) break;
       scene.world.set_command(scene.robot, command);
     }
-    if (manoeuvre.measured)
-      scene.world.prescribe(scene.robot,
-                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, robot, late));
-    scene.step();
+    advance(t_s);
   }
   out.succeeded = out.fault.empty() && succeeded(manoeuvre, out.end.X_WB);
   out.gave_up = driver.gave_up();
   out.steps = scene.world.step_count();
   out.contacts_per_step = static_cast<double>(scene.contacts) / static_cast<double>(out.steps);
+
+  // A pose whose clock is ahead shows where the robot goes then, as it was told and measured last.
+  const double until_s = pose_after_s > 0 ? time_of(step) + pose_after_s + options.sample_period_s : 0;
+  while (time_of(step) < until_s && scene.world.fault(scene.robot).empty()) {
+    advance(time_of(step++));
+    if (step % per_sample != 0) continue;
+    const physics::RobotTruth later = scene.world.truth(scene.robot);
+    for (RunRecorder& recorder : recorders) recorder.add_later_pose(row_time(time_of(step)), later);
+  }
+
   std::vector<RollOut> outs(robots.size(), out);
   for (std::size_t r = 0; r < outs.size(); ++r) outs[r].run = recorders[r].take();
   return outs;

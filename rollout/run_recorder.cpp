@@ -84,16 +84,17 @@ std::map<std::string, double> column_noise(const RobotDescription& nominal, cons
 
 std::vector<std::string> recorded_columns(const RobotDescription& nominal) {
   const RobotDescription robot = instrumented(nominal, 0);
-  return RunRecorder(robot, {}).take().columns;
+  return RunRecorder(robot, {}, std::nullopt).take().columns;
 }
 
-RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& options)
+RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& options,
+                         const std::optional<Start>& start)
     : robot_(robot),
       mocap_noise_m_(options.mocap_noise_m * options.noise_scale),
       mocap_noise_rad_(options.mocap_noise_rad * options.noise_scale),
       mocap_noise_(options.seed, "world", "motion capture"),
-      tracking_(robot.effects),
-      clock_offset_s_(robot.effects.clock_offset_s) {
+      reference_(start ? Reference::first_report : Reference::world),
+      starts_in_motion_(start && start->motion) {
   // The columns in the order of the format, those that the robot measures.
   using enum robot::Quantity;
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
@@ -172,38 +173,37 @@ void RunRecorder::add(double t_s, const robot::Command& command, const physics::
   put(cmd_flipper_, {flipper[robot::kFrontLeft].value, flipper[robot::kFrontRight].value,
                      flipper[robot::kRearLeft].value, flipper[robot::kRearRight].value});
 
-  // The pose as motion capture reports it; its noise is drawn now and added in take(), after the clock's shift.
-  const TrackedPose tracked = tracking_.report(t_s, {truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
-  put(position_, {tracked.p_WB_m.x(), tracked.p_WB_m.y(), tracked.p_WB_m.z()});
-  put(yaw_, {tracked.yaw_rad});
+  // The pose is reported in take(), as motion capture may show a later one.
+  if (course_.t_s.empty() && starts_in_motion_) {
+    course_.v_WB_mps = truth.v_WB_mps;
+    course_.yaw_radps = truth.w_WB_radps.z();
+  }
+  add_later_pose(t_s, truth);
   const Eigen::Vector3d p_noise_m = mocap_noise_.normal3(mocap_noise_m_);
   pose_noise_.push_back({p_noise_m, mocap_noise_.normal(mocap_noise_rad_)});
   for (const physics::SensorSample& sample : samples)
     std::visit([this](const auto& reading) { put_reading(reading); }, sample.reading);
 }
 
-void RunRecorder::shift_clock() {
-  const std::vector<double>& t_s = run_.values[time_.first];
-  for (std::size_t i = 0; i < position_.count; ++i) {
-    std::vector<double>& column = run_.values[position_.first + i];
-    column = delayed(t_s, column, clock_offset_s_, false);
-  }
-  std::vector<double>& yaw = run_.values[yaw_.first];
-  yaw = delayed(t_s, yaw, clock_offset_s_, true);
+void RunRecorder::add_later_pose(double t_s, const physics::RobotTruth& truth) {
+  course_.t_s.push_back(t_s);
+  course_.pose.push_back({truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
 }
 
-void RunRecorder::add_mocap_noise() {
-  std::vector<double>& yaw = run_.values[yaw_.first];
-  for (std::size_t row = 0; row < pose_noise_.size(); ++row) {
-    for (std::size_t i = 0; i < position_.count; ++i)
-      run_.values[position_.first + i][row] += pose_noise_[row].p_m[static_cast<Eigen::Index>(i)];
-    yaw[row] = robot::wrap_angle(yaw[row] + pose_noise_[row].yaw_rad);
+void RunRecorder::put_poses() {
+  const std::vector<TrackedPose> poses = reported_poses(course_, run_.values[time_.first], robot_.effects, reference_);
+  for (std::size_t row = 0; row < poses.size(); ++row) {
+    for (std::size_t i = 0; i < position_.count; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      run_.values[position_.first + i][row] = poses[row].p_WB_m[axis] + pose_noise_[row].p_WB_m[axis];
+    }
+    run_.values[yaw_.first][row] = robot::wrap_angle(poses[row].yaw_rad + pose_noise_[row].yaw_rad);
   }
 }
 
 runs::Run RunRecorder::take() {
-  if (clock_offset_s_ != 0) shift_clock();
-  add_mocap_noise();
+  if (!course_.t_s.empty()) put_poses();
+  course_ = {};
   pose_noise_.clear();
   return std::move(run_);
 }

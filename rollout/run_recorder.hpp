@@ -3,11 +3,13 @@
 // Thread safety: none; one thread owns a RunRecorder.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "physics/noise.hpp"
 #include "robot/columns.hpp"
+#include "rollout/manoeuvre.hpp"
 #include "rollout/roll_out.hpp"
 #include "rollout/tracking.hpp"
 
@@ -18,11 +20,13 @@ physics::RobotDescription instrumented(physics::RobotDescription robot, double n
 
 class RunRecorder {
  public:
-  // `robot` as instrumented() makes it; must outlive this.
-  RunRecorder(const physics::RobotDescription& robot, const RollOutOptions& options);
+  // `robot` as instrumented() makes it; must outlive this. `start`: of the run that is replayed, if one is.
+  RunRecorder(const physics::RobotDescription& robot, const RollOutOptions& options, const std::optional<Start>& start);
 
   void add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
            std::span<const physics::SensorSample> samples);
+  // A pose after the last row, which motion capture with a clock that is ahead shows in one of the rows.
+  void add_later_pose(double t_s, const physics::RobotTruth& truth);
   // Returns the rows that were added and empties the recorder.
   runs::Run take();
 
@@ -33,8 +37,7 @@ class RunRecorder {
   };
   Group add_group(bool measured, robot::Quantity quantity);
   void put(Group group, std::initializer_list<double> values);
-  void shift_clock();
-  void add_mocap_noise();
+  void put_poses();
 
   void put_reading(const physics::InsReading& reading);
   void put_reading(const physics::ImuReading& reading);
@@ -47,13 +50,10 @@ class RunRecorder {
   const physics::RobotDescription& robot_;
   double mocap_noise_m_, mocap_noise_rad_;
   physics::NoiseSource mocap_noise_;
-  Tracking tracking_;
-  double clock_offset_s_;
-  struct PoseNoise {
-    Eigen::Vector3d p_m;
-    double yaw_rad;
-  };
-  std::vector<PoseNoise> pose_noise_;  // of each row; added last, since it does not depend on the pose's time
+  Reference reference_;
+  bool starts_in_motion_;
+  PoseCourse course_;                    // the poses of all rows, then the later ones
+  std::vector<TrackedPose> pose_noise_;  // of each row, since it does not depend on the pose's time
   runs::Run run_;
   Group time_, cmd_track_, cmd_flipper_, track_speed_, track_travel_, flipper_, track_current_, flipper_current_,
       battery_, position_, tilt_, yaw_, gyro_, acceleration_;

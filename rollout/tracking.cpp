@@ -13,60 +13,66 @@ Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle_rad) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
+double late_s(const physics::Effects& effects) {
+  return effects.tracking_delay_s + effects.clock_offset_s;
+}
+
+// A pose in the plane as seen from `from`, put down at `to`.
+TrackedPose moved(const TrackedPose& pose, const TrackedPose& from, const TrackedPose& to) {
+  const double turn_rad = to.yaw_rad - from.yaw_rad;
+  TrackedPose result = pose;
+  result.p_WB_m.head<2>() = to.p_WB_m.head<2>() + turned((pose.p_WB_m - from.p_WB_m).head<2>(), turn_rad);
+  result.yaw_rad += turn_rad;
+  return result;
+}
+
+// Of the robot that started at `start`, whose pose is now `pose`.
+TrackedPose reported(TrackedPose pose, const TrackedPose& start, const physics::Effects& effects) {
+  // The start is where the point was reported, so only its motion since then counts: (R(yaw) - R(yaw_0)) p_BP.
+  const Eigen::Vector2d p_BP_m(effects.tracked_point_forward_m, effects.tracked_point_left_m);
+  if (!p_BP_m.isZero(0)) pose.p_WB_m.head<2>() += turned(p_BP_m, pose.yaw_rad) - turned(p_BP_m, start.yaw_rad);
+  // The run started at the reported heading, to the left of the true one by the turn, so the reported path is turned
+  // to the right by that angle about the start.
+  if (effects.tracking_turn_rad != 0)
+    pose.p_WB_m.head<2>() =
+        start.p_WB_m.head<2>() + turned((pose.p_WB_m - start.p_WB_m).head<2>(), -effects.tracking_turn_rad);
+  if (effects.tracking_scale != 1)
+    for (const Eigen::Index axis : {0, 1})
+      pose.p_WB_m[axis] = start.p_WB_m[axis] + effects.tracking_scale * (pose.p_WB_m[axis] - start.p_WB_m[axis]);
+  return pose;
+}
+
 }  // namespace
 
-Tracking::Tracking(const physics::Effects& effects)
-    : delay_s_(effects.tracking_delay_s),
-      p_BP_m_(effects.tracked_point_forward_m, effects.tracked_point_left_m),
-      turn_rad_(effects.tracking_turn_rad),
-      scale_(effects.tracking_scale) {}
-
-TrackedPose Tracking::report(double t_s, const TrackedPose& pose) {
-  if (!started_) start_ = pose;
-  started_ = true;
-  TrackedPose reported = pose;
-  if (delay_s_ > 0) {
-    past_.push_back({t_s, pose});
-    reported = pose_at(t_s - delay_s_);
+TrackedPose PoseCourse::at(double time_s) const {
+  const auto next = static_cast<std::size_t>(std::ranges::upper_bound(t_s, time_s) - t_s.begin());
+  if (next == t_s.size()) return pose.back();
+  if (next == 0) {
+    const double before_s = t_s.front() - time_s;
+    return {pose.front().p_WB_m - before_s * v_WB_mps, pose.front().yaw_rad - before_s * yaw_radps};
   }
-  // The start is where the point was reported, so only its motion since then counts: (R(yaw) - R(yaw_0)) p_BP.
-  if (!p_BP_m_.isZero(0))
-    reported.p_WB_m.head<2>() += turned(p_BP_m_, reported.yaw_rad) - turned(p_BP_m_, start_.yaw_rad);
-  // The run started at the reported heading, to the left of the true one by turn_rad_, so the reported path is turned
-  // to the right by that angle about the start.
-  if (turn_rad_ != 0)
-    reported.p_WB_m.head<2>() =
-        start_.p_WB_m.head<2>() + turned((reported.p_WB_m - start_.p_WB_m).head<2>(), -turn_rad_);
-  if (scale_ != 1)
-    for (const Eigen::Index axis : {0, 1})
-      reported.p_WB_m[axis] = start_.p_WB_m[axis] + scale_ * (reported.p_WB_m[axis] - start_.p_WB_m[axis]);
-  return reported;
+  const TrackedPose &from = pose[next - 1], &to = pose[next];
+  const double share = (time_s - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
+  return {from.p_WB_m + share * (to.p_WB_m - from.p_WB_m),
+          from.yaw_rad + share * robot::wrap_angle(to.yaw_rad - from.yaw_rad)};
 }
 
-TrackedPose Tracking::pose_at(double t_s) {
-  while (past_.size() > 1 && past_[1].t_s <= t_s) past_.pop_front();
-  const Sample& before = past_.front();
-  if (t_s <= before.t_s) return before.pose;
-  const Sample& after = past_[1];  // there is one: the newest sample is later than t_s
-  const double share = (t_s - before.t_s) / (after.t_s - before.t_s);
-  return {before.pose.p_WB_m + share * (after.pose.p_WB_m - before.pose.p_WB_m),
-          before.pose.yaw_rad + share * robot::wrap_angle(after.pose.yaw_rad - before.pose.yaw_rad)};
+std::vector<TrackedPose> reported_poses(const PoseCourse& course, std::span<const double> row_s,
+                                        const physics::Effects& effects, Reference reference) {
+  const double late = late_s(effects);
+  const TrackedPose &start = course.pose.front(), first = course.at(row_s.front() - late);
+  const bool is_moved = late != 0 && reference == Reference::first_report;
+  std::vector<TrackedPose> poses;
+  poses.reserve(row_s.size());
+  for (const double t_s : row_s) {
+    const TrackedPose pose = course.at(t_s - late);
+    poses.push_back(reported(is_moved ? moved(pose, first, start) : pose, start, effects));
+  }
+  return poses;
 }
 
-std::vector<double> delayed(std::span<const double> t_s, std::span<const double> values, double late_s, bool angles) {
-  std::vector<double> out;
-  out.reserve(values.size());
-  for (const double t : t_s) {
-    const auto next = static_cast<std::size_t>(std::ranges::upper_bound(t_s, t - late_s) - t_s.begin());
-    if (next == 0 || next == t_s.size()) {
-      out.push_back(next == 0 ? values.front() : values.back());
-      continue;
-    }
-    const double share = (t - late_s - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
-    const double step = values[next] - values[next - 1];
-    out.push_back(values[next - 1] + share * (angles ? robot::wrap_angle(step) : step));
-  }
-  return out;
+double pose_needed_after_s(const physics::Effects& effects) {
+  return std::max(0.0, -late_s(effects));
 }
 
 }  // namespace kenaf::rollout

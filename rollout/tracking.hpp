@@ -1,13 +1,10 @@
 // The robot's pose as motion capture or lidar reports it, without noise: the effects tracking_*, tracked_point_* and
-// clock_offset. They act in the order delay, point, turn, scale, clock. Before the first pose the robot was where it
-// started; the point's offset is turned by yaw alone, without roll, pitch and z; a clock that is ahead repeats the last
-// pose at the end.
+// clock_offset.
 //
-// Thread safety: none; one thread owns a Tracking.
+// Thread safety: values and pure functions.
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <span>
 #include <vector>
 
@@ -20,32 +17,31 @@ struct TrackedPose {
   double yaw_rad;
 };
 
-class Tracking {
- public:
-  explicit Tracking(const physics::Effects& effects);
+// True poses in the order of time; not empty.
+struct PoseCourse {
+  std::vector<double> t_s;
+  std::vector<TrackedPose> pose;
+  // The robot's motion before the first pose, which is steady.
+  Eigen::Vector3d v_WB_mps{0, 0, 0};
+  double yaw_radps = 0;
 
-  // Returns the reported pose for the true one; the first call sets the start. Times must increase. With neutral
-  // effects returns the true pose, to the last bit. The clock's offset is not included, as it may need later poses: see
-  // delayed().
-  TrackedPose report(double t_s, const TrackedPose& pose);
-
- private:
-  struct Sample {
-    double t_s;
-    TrackedPose pose;
-  };
-  TrackedPose pose_at(double t_s);
-
-  double delay_s_;
-  Eigen::Vector2d p_BP_m_;  // the tracked point
-  double turn_rad_, scale_;
-  TrackedPose start_{{0, 0, 0}, 0};
-  std::deque<Sample> past_;  // begins with the newest sample that is older than the delay
-  bool started_ = false;
+  // Interpolated linearly, yaw the short way; after the last pose the robot stands.
+  TrackedPose at(double time_s) const;
 };
 
-// Returns `values` delayed by `late_s`, advanced if that is negative: interpolated linearly, angles the short way;
-// beyond the ends, the first and the last value are held. `t_s` must increase.
-std::vector<double> delayed(std::span<const double> t_s, std::span<const double> values, double late_s, bool angles);
+// What fixes the frame of the reported poses.
+enum class Reference {
+  world,         // the reports are in the simulated world, and an early or late one at the start shows another place
+  first_report,  // the robot was put where it was first reported to be, as in a replay: that is the first reported pose
+};
+
+// Returns the poses that are reported at `row_s`. The effects act in the order delay and clock, point, turn, scale; the
+// point's offset is turned by yaw alone, without roll, pitch and z. A clock that is ahead needs poses after the last
+// row. With neutral effects returns the true poses, to the last bit.
+std::vector<TrackedPose> reported_poses(const PoseCourse& course, std::span<const double> row_s,
+                                        const physics::Effects& effects, Reference reference);
+
+// How long after the last row the pose must be known for that.
+double pose_needed_after_s(const physics::Effects& effects);
 
 }  // namespace kenaf::rollout

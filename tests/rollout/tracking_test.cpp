@@ -1,6 +1,7 @@
 // What motion capture or lidar says of where the robot is: late or early, with a scale, of another point, and turned.
 #include "rollout/tracking.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +15,8 @@ using namespace kenaf::rollout;
 namespace {
 
 // Without noise; the two simulations that a test compares are the same to the last bit, and only their report differs.
-runs::Run driven(const physics::Effects& effects, double left_mps, double right_mps, const Start& start) {
+runs::Run driven(const physics::Effects& effects, double left_mps, double right_mps, const Start& start,
+                 double for_s = 2) {
   physics::RobotDescription robot = physics::load_robot("kenaf");
   robot.effects = effects;
   physics::WorldDescription world;
@@ -24,7 +26,7 @@ runs::Run driven(const physics::Effects& effects, double left_mps, double right_
   manoeuvre.start = start;
   robot::Command command;
   command.track_speed_mps = {left_mps, right_mps};
-  manoeuvre.timed = {{0, command}, {2, command}};
+  manoeuvre.timed = {{0, command}, {for_s, command}};
   RollOutOptions options;
   options.physics.time_step_s = 0.005;
   options.noise_scale = 0;
@@ -32,6 +34,11 @@ runs::Run driven(const physics::Effects& effects, double left_mps, double right_
 }
 
 constexpr Start kSomewhere{.x_m = 5, .y_m = -2, .yaw_rad = 0, .z_m = {}, .flipper_rad = {}, .motion = {}};
+
+// What is reported at 1 s of a robot that started at `start` at 0 s.
+TrackedPose reported_of(const physics::Effects& effects, const TrackedPose& start, const TrackedPose& pose) {
+  return reported_poses({{0, 1}, {start, pose}}, std::vector<double>{0, 1}, effects, Reference::world).back();
+}
 
 bool same_bits(const runs::Run& a, const runs::Run& b, std::string_view column) {
   return std::ranges::equal(a.column(column), b.column(column),
@@ -74,12 +81,13 @@ TEST_CASE("Late tracking concerns x, y, z and yaw, what the robot measures itsel
 }
 
 TEST_CASE("Yaw between two rows takes the short way across half a turn") {
-  Tracking tracking({.tracking_delay_s = 0.005});
   const double just = 0.02;
-  tracking.report(0, {Eigen::Vector3d::Zero(), std::numbers::pi - just});
-  const TrackedPose middle = tracking.report(0.01, {Eigen::Vector3d::UnitX(), just - std::numbers::pi});
+  const PoseCourse course{
+      {0, 0.01},
+      {{Eigen::Vector3d::Zero(), std::numbers::pi - just}, {Eigen::Vector3d::UnitX(), just - std::numbers::pi}}};
+  const TrackedPose middle = course.at(0.005);
   CHECK(middle.p_WB_m.x() == Approx(0.5));
-  CHECK(std::abs(middle.yaw_rad) == Approx(std::numbers::pi));
+  CHECK(middle.yaw_rad == Approx(std::numbers::pi));
 }
 
 TEST_CASE("A scale of 0.9 shows 0.9 of the way from the first pose, wherever that is") {
@@ -99,23 +107,67 @@ TEST_CASE("A scale of 0.9 shows 0.9 of the way from the first pose, wherever tha
 }
 
 TEST_CASE("Late and scaled: 0.9 of where it was") {
-  Tracking tracking({.tracking_delay_s = 0.1, .tracking_scale = 0.9});
   const auto at = [](double x_m) { return TrackedPose{{x_m, 0, x_m}, 0}; };
-  CHECK(tracking.report(0, at(2)).p_WB_m.x() == 2);
-  CHECK(tracking.report(0.1, at(3)).p_WB_m.x() == 2);
-  const TrackedPose reported = tracking.report(0.2, at(4));
-  CHECK(reported.p_WB_m.x() == Approx(2 + 0.9 * (3 - 2)));
-  CHECK(reported.p_WB_m.z() == Approx(3));
+  const PoseCourse course{{0, 0.1, 0.2}, {at(2), at(3), at(4)}};
+  const std::vector<TrackedPose> reported =
+      reported_poses(course, course.t_s, {.tracking_delay_s = 0.1, .tracking_scale = 0.9}, Reference::world);
+  CHECK(reported[0].p_WB_m.x() == 2);
+  CHECK(reported[1].p_WB_m.x() == 2);
+  CHECK(reported[2].p_WB_m.x() == Approx(2 + 0.9 * (3 - 2)));
+  CHECK(reported[2].p_WB_m.z() == Approx(3));
+}
+
+TEST_CASE("Before the first pose the robot moved as it did then, after the last one it stands") {
+  const PoseCourse course{{1, 2}, {{{5, 0, 1}, 0.5}, {{6, 0, 1}, 0.7}}, {0.4, 0.2, 0}, -0.1};
+  CHECK(course.at(1).p_WB_m == Eigen::Vector3d(5, 0, 1));
+  // half a second earlier: 0.2 m and 0.1 m less, and 0.05 rad more
+  CHECK(course.at(0.5).p_WB_m.isApprox(Eigen::Vector3d(4.8, -0.1, 1)));
+  CHECK(course.at(0.5).yaw_rad == Approx(0.55));
+  CHECK(course.at(9).p_WB_m == Eigen::Vector3d(6, 0, 1));
+  CHECK(course.at(9).yaw_rad == 0.7);
+}
+
+TEST_CASE("A replay starts where the robot was first reported, however late or early that report was") {
+  // Along a quarter of a circle of 2 m at 0.5 rad/s, from (0, 0) and a heading of 0. Its true first place was another
+  // one; as reported it starts at the first pose, and drives the circle on from there.
+  const double radius_m = 2, rate_radps = 0.5;
+  const auto on_circle = [&](double turned_rad) {
+    return TrackedPose{{radius_m * std::sin(turned_rad), radius_m * (1 - std::cos(turned_rad)), 0}, turned_rad};
+  };
+  PoseCourse course;
+  for (int i = 0; i <= 4000; ++i) {
+    course.t_s.push_back(i * 1e-3);
+    course.pose.push_back(on_circle(rate_radps * course.t_s.back()));
+  }
+  course.v_WB_mps = {radius_m * rate_radps, 0, 0};
+  course.yaw_radps = rate_radps;
+  const std::vector<double> rows{0, 1, 2};
+
+  for (const double offset_s : {-0.5, 0.01}) {
+    INFO(offset_s);
+    const physics::Effects effects{.clock_offset_s = offset_s};
+    const std::vector<TrackedPose> replayed = reported_poses(course, rows, effects, Reference::first_report),
+                                   in_world = reported_poses(course, rows, effects, Reference::world);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      // a circle looks the same from each of its points
+      const TrackedPose same = on_circle(rate_radps * rows[row]),
+                        shifted = on_circle(rate_radps * (rows[row] - offset_s));
+      CHECK((replayed[row].p_WB_m - same.p_WB_m).norm() < 1e-4);
+      CHECK(replayed[row].yaw_rad == Approx(same.yaw_rad).margin(1e-9));
+      CHECK((in_world[row].p_WB_m - shifted.p_WB_m).norm() < 1e-4);
+      CHECK(in_world[row].yaw_rad == Approx(shifted.yaw_rad).margin(1e-9));
+    }
+  }
 }
 
 TEST_CASE("A point ahead of the body's centre goes round it as the robot turns, and starts where the run began") {
   // turned in place from 0.7 rad by a: the point is displaced by R(0.7 + a) L - R(0.7) L
   for (const Eigen::Vector2d& L : {Eigen::Vector2d(0.3, 0), Eigen::Vector2d(0, -0.2), Eigen::Vector2d(0.3, -0.2)}) {
-    Tracking tracking({.tracked_point_forward_m = L.x(), .tracked_point_left_m = L.y()});
+    const physics::Effects effects{.tracked_point_forward_m = L.x(), .tracked_point_left_m = L.y()};
     const Eigen::Vector3d p(1, 2, 3);
-    CHECK(tracking.report(0, {p, 0.7}).p_WB_m == p);
+    CHECK(reported_of(effects, {p, 0.7}, {p, 0.7}).p_WB_m == p);
     for (const double a : {0.5, -2.0, std::numbers::pi}) {
-      const TrackedPose reported = tracking.report(1, {p, 0.7 + a});
+      const TrackedPose reported = reported_of(effects, {p, 0.7}, {p, 0.7 + a});
       const double b = 0.7 + a;
       CHECK(reported.p_WB_m.x() ==
             Approx(1 + L.x() * (std::cos(b) - std::cos(0.7)) - L.y() * (std::sin(b) - std::sin(0.7))));
@@ -128,10 +180,9 @@ TEST_CASE("A point ahead of the body's centre goes round it as the robot turns, 
 }
 
 TEST_CASE("A heading that is reported too far left: the same yaw, and a path that is turned to the right") {
-  Tracking tracking({.tracking_turn_rad = 0.2});
-  tracking.report(0, {{1, 2, 3}, 0.7});
   // 2 m along the heading of 0.7 rad, then a turn: along 0.5 rad
-  const TrackedPose ahead = tracking.report(1, {{1 + 2 * std::cos(0.7), 2 + 2 * std::sin(0.7), 3.5}, 1.5});
+  const TrackedPose ahead = reported_of({.tracking_turn_rad = 0.2}, {{1, 2, 3}, 0.7},
+                                        {{1 + 2 * std::cos(0.7), 2 + 2 * std::sin(0.7), 3.5}, 1.5});
   CHECK(ahead.p_WB_m.x() == Approx(1 + 2 * std::cos(0.5)));
   CHECK(ahead.p_WB_m.y() == Approx(2 + 2 * std::sin(0.5)));
   CHECK(ahead.p_WB_m.z() == 3.5);
@@ -148,47 +199,43 @@ TEST_CASE("With a turned tracker off the centre, the real run is recovered: one 
   };
   const Eigen::Vector2d start = point(0, true_rad), end = point(2, true_rad + turned_rad);
   const double reported_rad = true_rad + turn_rad;
-  Tracking tracking({.tracked_point_forward_m = forward_m, .tracking_turn_rad = turn_rad});
-  tracking.report(0, {{start.x(), start.y(), 0}, reported_rad});
   const TrackedPose simulated{{start.x() + 2 * std::cos(reported_rad), start.y() + 2 * std::sin(reported_rad), 0},
                               reported_rad + turned_rad};
-  const TrackedPose reported = tracking.report(1, simulated);
+  const TrackedPose reported = reported_of({.tracked_point_forward_m = forward_m, .tracking_turn_rad = turn_rad},
+                                           {{start.x(), start.y(), 0}, reported_rad}, simulated);
   CHECK(reported.p_WB_m.x() == Approx(end.x()));
   CHECK(reported.p_WB_m.y() == Approx(end.y()));
   CHECK(reported.yaw_rad == Approx(reported_rad + turned_rad));
 }
 
-TEST_CASE("Values of another time: on the line between two of them, and beyond the ends the last one") {
-  const std::vector<double> t_s{0, 1, 2, 4}, values{10, 20, 40, 0};
-  CHECK(delayed(t_s, values, 0.5, false) == std::vector<double>{10, 15, 30, 10});
-  CHECK(delayed(t_s, values, -0.5, false) == std::vector<double>{15, 30, 30, 0});
-  CHECK(delayed(t_s, values, -1, false) == std::vector<double>{20, 40, 20, 0});
-  CHECK(delayed(t_s, values, 9, false) == std::vector<double>(4, 10));
-  CHECK(delayed(t_s, values, -9, false) == std::vector<double>(4, 0));
-  const double just = 0.02, pi = std::numbers::pi;
-  const std::vector<double> two{0, 1}, across{pi - just, 3 * just - pi};
-  CHECK(delayed(two, across, 0.5, true)[1] == Approx(pi + just));  // the short way of 4 just
-}
-
-TEST_CASE("A clock that is behind is a delay, one that is ahead shows what comes, until the run ends") {
-  const runs::Run prompt = driven({}, 0.1, 0.3, kSomewhere),
+TEST_CASE("A clock that is behind is a delay, one that is ahead shows what comes, also after the run") {
+  const runs::Run prompt = driven({}, 0.1, 0.3, kSomewhere), longer = driven({}, 0.1, 0.3, kSomewhere, 2.2),
                   late_run = driven({.tracking_delay_s = 0.105}, 0.1, 0.3, kSomewhere),
                   behind = driven({.clock_offset_s = 0.105}, 0.1, 0.3, kSomewhere),
                   ahead = driven({.clock_offset_s = -0.2}, 0.1, 0.3, kSomewhere);
   const std::size_t rows = prompt.row_count();
   for (const std::string& column : prompt.columns) {
     INFO(column);
-    const auto p = prompt.column(column), d = late_run.column(column), b = behind.column(column),
-               a = ahead.column(column);
-    if (column != "x_m" && column != "y_m" && column != "z_m" && column != "yaw_rad") {
-      CHECK(same_bits(prompt, behind, column));
-      CHECK(same_bits(prompt, ahead, column));
-      continue;
-    }
-    for (std::size_t row = 0; row < rows; ++row) {
-      REQUIRE(b[row] == Approx(d[row]).epsilon(0).margin(1e-9));
-      REQUIRE(a[row] == Approx(p[std::min(row + 20, rows - 1)]).epsilon(0).margin(1e-9));
-    }
+    CHECK(same_bits(late_run, behind, column));
+    if (column == "x_m" || column == "y_m" || column == "z_m" || column == "yaw_rad") continue;
+    CHECK(same_bits(prompt, behind, column));
+    CHECK(same_bits(prompt, ahead, column));
+  }
+
+  // Seen from where it is 0.2 s after the start, which is where a replay puts it: the way from there on, turned back by
+  // what it turned until then.
+  REQUIRE(longer.row_count() == rows + 20);
+  const auto place = [](const runs::Run& run, std::size_t row) {
+    return Eigen::Vector2d(run.column("x_m")[row], run.column("y_m")[row]);
+  };
+  const auto yaw = [](const runs::Run& run, std::size_t row) { return run.column("yaw_rad")[row]; };
+  const double turned_rad = yaw(longer, 20) - yaw(longer, 0);
+  CHECK(turned_rad > 0.01);
+  const Eigen::Rotation2Dd back(-turned_rad);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Eigen::Vector2d expected = place(longer, 0) + back * (place(longer, row + 20) - place(longer, 20));
+    REQUIRE((place(ahead, row) - expected).norm() < 1e-9);
+    REQUIRE(yaw(ahead, row) == Approx(yaw(longer, row + 20) - turned_rad).epsilon(0).margin(1e-9));
   }
 }
 
