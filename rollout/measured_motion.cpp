@@ -267,6 +267,21 @@ MeasuredMotion measured_motion(const runs::Run& run) {
   return motion;
 }
 
+std::array<double, robot::kTrackCount> without_encoder_errors(const physics::RobotDescription& robot,
+                                                              std::array<double, robot::kTrackCount> reported_mps) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) reported_mps[side] /= robot.encoder_factor(side);
+  return reported_mps;
+}
+
+BodyMotion body_motion(const physics::RobotDescription& robot, const StartMotion& start) {
+  if (!start.track_mps) return {start.forward_mps.value_or(0), start.yaw_radps.value_or(0)};
+  const auto [left, right] = without_encoder_errors(robot, *start.track_mps);
+  const double without_slip_radps = (right - left) / robot.track_gauge_m();
+  const auto [least, most] = std::minmax({0.0, without_slip_radps});
+  return {start.forward_mps.value_or((left + right) / 2),
+          std::clamp(start.yaw_radps.value_or(without_slip_radps), least, most)};
+}
+
 std::optional<StartMotion> motion_at_start(const runs::Run& run) {
   const MeasuredMotion measured = measured_motion(run);
   if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty)) return motion_of_poses(first_poses(run, kCubic_s));

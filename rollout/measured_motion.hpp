@@ -53,11 +53,24 @@ MeasuredMotion measured_motion(const runs::Run& run);
 physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s,
                                         const physics::RobotDescription& robot, const ReportDelays& late);
 
+// Returns the true speeds of belts whose encoders have these errors (encoder_scale, encoder_asymmetry) and report
+// these.
+std::array<double, robot::kTrackCount> without_encoder_errors(const physics::RobotDescription& robot,
+                                                              std::array<double, robot::kTrackCount> reported_mps);
+
 // How a robot on the ground moves when a run begins.
 struct StartMotion {
   std::optional<std::array<double, robot::kTrackCount>> track_mps;  // empty: those of the body without slip
   std::optional<double> forward_mps, yaw_radps;  // of the body; empty: those that the tracks give without slip
 };
+
+// Of the body, forward and about its vertical axis.
+struct BodyMotion {
+  double forward_mps, yaw_radps;
+};
+// Returns the body's motion at the start. With known tracks, missing rates are those without slip, and yaw is limited
+// to between none and that.
+BodyMotion body_motion(const physics::RobotDescription& robot, const StartMotion& start);
 
 // Returns nothing if the robot stands: both tracks turn at less than 10 mm/s, which a drive stops within 1 mm.
 //

@@ -11,6 +11,7 @@
 #include "physics/terrain_effects.hpp"
 #include "robot/angles.hpp"
 #include "rollout/driver.hpp"
+#include "rollout/first_report.hpp"
 #include "rollout/run_recorder.hpp"
 
 namespace kenaf::rollout {
@@ -49,11 +50,14 @@ FlipperAngles flippers_at_start(const Manoeuvre& manoeuvre, const RobotDescripti
   return angles;
 }
 
-Pose start_pose(const physics::WorldDescription& world, const Manoeuvre& manoeuvre, const RollOutOptions& options) {
+Pose start_pose(const RobotDescription& robot, const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
+                const RollOutOptions& options) {
   Pose X_WB = world.start_poses.front().X_WB;
   if (manoeuvre.start) {
     const Start& start = *manoeuvre.start;
-    return {{start.x_m, start.y_m, start.z_m.value_or(X_WB.p.z())}, physics::rotation_from({0, 0, start.yaw_rad})};
+    X_WB = {{start.x_m, start.y_m, start.z_m.value_or(X_WB.p.z())}, physics::rotation_from({0, 0, start.yaw_rad})};
+    if (!starts_elsewhere(robot.effects, world, manoeuvre)) return X_WB;
+    return physics::compose(X_WB, physics::inverse(at_first_report(robot, world, manoeuvre, options)));
   }
   physics::NoiseSource noise(options.seed, "world", "start pose");
   const double x = noise.normal(options.start_scatter_m), y = noise.normal(options.start_scatter_m);
@@ -177,25 +181,15 @@ void put_at_start(Scene& scene, Robots robots, const Manoeuvre& manoeuvre, const
     for (std::size_t i = 0; i < robots[r].sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i, {}, r);
 }
 
-// Sets the settled robot in motion as at the start of the run. With known tracks, missing rates are those without slip,
-// and yaw is limited to between none and that; with known rates, the tracks are those without slip.
+// Sets the settled robot in motion as at the start of the run: on its known tracks, or on those without slip.
 void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotion& motion,
                    const robot::Command& command) {
-  const double gauge_m = robot.track_gauge_m();
+  const auto [forward_mps, yaw_radps] = body_motion(robot, motion);
+  const double half_gauge_m = robot.track_gauge_m() / 2;
   physics::RobotMotion start;
-  double forward_mps = motion.forward_mps.value_or(0), yaw_radps = motion.yaw_radps.value_or(0);
-  if (motion.track_mps) {
-    for (const robot::Track side : {robot::kLeft, robot::kRight})
-      start.track_mps[side] = (*motion.track_mps)[side] / robot.encoder_factor(side);
-    const auto [left, right] = start.track_mps;
-    if (!motion.forward_mps) forward_mps = (left + right) / 2;
-    const double without_slip_radps = (right - left) / gauge_m;
-    yaw_radps = motion.yaw_radps ? std::clamp(*motion.yaw_radps, std::min(0.0, without_slip_radps),
-                                              std::max(0.0, without_slip_radps))
-                                 : without_slip_radps;
-  } else {
-    start.track_mps = {forward_mps - yaw_radps * gauge_m / 2, forward_mps + yaw_radps * gauge_m / 2};
-  }
+  start.track_mps = motion.track_mps
+                        ? without_encoder_errors(robot, *motion.track_mps)
+                        : std::array{forward_mps - yaw_radps * half_gauge_m, forward_mps + yaw_radps * half_gauge_m};
   const Eigen::Quaterniond& q_WB = scene.world.truth(scene.robot).X_WB.q;
   start.v_WB_mps = q_WB * Eigen::Vector3d(forward_mps, 0, 0);
   start.w_WB_radps = q_WB * Eigen::Vector3d(0, 0, yaw_radps);
@@ -216,7 +210,7 @@ std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const p
   const ReportDelays late = report_delays(robot);
   const FlipperAngles flippers = flippers_at_start(manoeuvre, robot);
   Scene scene{World(physics::with_terrain_effects(world, robot.effects), options.physics, options.seed), per_sample};
-  put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
+  put_at_start(scene, measured, manoeuvre, flippers, start_pose(robots.front(), world, manoeuvre, options));
 
   // Operator, recorders, and a recorded run's motion at its start.
   RollOut out;
@@ -224,7 +218,7 @@ std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const p
   double pose_after_s = 0;
   for (const RobotDescription& one : measured) {
     recorders.emplace_back(one, options, manoeuvre.start);
-    pose_after_s = std::max(pose_after_s, pose_needed_after_s(one.effects));
+    pose_after_s = std::max(pose_after_s, -late_s(one.effects));
   }
   Driver driver(manoeuvre, flippers);
   robot::Command command;

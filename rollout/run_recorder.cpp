@@ -93,8 +93,9 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
       mocap_noise_m_(options.mocap_noise_m * options.noise_scale),
       mocap_noise_rad_(options.mocap_noise_rad * options.noise_scale),
       mocap_noise_(options.seed, "world", "motion capture"),
-      reference_(start ? Reference::first_report : Reference::world),
       starts_in_motion_(start && start->motion) {
+  if (start) first_report_ = {{start->x_m, start->y_m, 0}, start->yaw_rad};
+
   // The columns in the order of the format, those that the robot measures.
   using enum robot::Quantity;
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
@@ -191,7 +192,8 @@ void RunRecorder::add_later_pose(double t_s, const physics::RobotTruth& truth) {
 }
 
 void RunRecorder::put_poses() {
-  const std::vector<TrackedPose> poses = reported_poses(course_, run_.values[time_.first], robot_.effects, reference_);
+  const std::vector<TrackedPose> poses =
+      reported_poses(course_, run_.values[time_.first], robot_.effects, first_report_);
   for (std::size_t row = 0; row < poses.size(); ++row) {
     for (std::size_t i = 0; i < position_.count; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);

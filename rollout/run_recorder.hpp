@@ -50,7 +50,7 @@ class RunRecorder {
   const physics::RobotDescription& robot_;
   double mocap_noise_m_, mocap_noise_rad_;
   physics::NoiseSource mocap_noise_;
-  Reference reference_;
+  std::optional<TrackedPose> first_report_;
   bool starts_in_motion_;
   PoseCourse course_;                    // the poses of all rows, then the later ones
   std::vector<TrackedPose> pose_noise_;  // of each row, since it does not depend on the pose's time

@@ -13,10 +13,6 @@ Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle_rad) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-double late_s(const physics::Effects& effects) {
-  return effects.tracking_delay_s + effects.clock_offset_s;
-}
-
 // A pose in the plane as seen from `from`, put down at `to`.
 TrackedPose moved(const TrackedPose& pose, const TrackedPose& from, const TrackedPose& to) {
   const double turn_rad = to.yaw_rad - from.yaw_rad;
@@ -57,11 +53,18 @@ TrackedPose PoseCourse::at(double time_s) const {
           from.yaw_rad + share * robot::wrap_angle(to.yaw_rad - from.yaw_rad)};
 }
 
+double late_s(const physics::Effects& effects) {
+  return effects.tracking_delay_s + effects.clock_offset_s;
+}
+
 std::vector<TrackedPose> reported_poses(const PoseCourse& course, std::span<const double> row_s,
-                                        const physics::Effects& effects, Reference reference) {
+                                        const physics::Effects& effects,
+                                        const std::optional<TrackedPose>& first_report) {
   const double late = late_s(effects);
-  const TrackedPose &start = course.pose.front(), first = course.at(row_s.front() - late);
-  const bool is_moved = late != 0 && reference == Reference::first_report;
+  const TrackedPose first = course.at(row_s.front() - late);
+  TrackedPose start = course.pose.front();
+  const bool is_moved = first_report && (first.p_WB_m != start.p_WB_m || first.yaw_rad != start.yaw_rad);
+  if (is_moved) start = *first_report;
   std::vector<TrackedPose> poses;
   poses.reserve(row_s.size());
   for (const double t_s : row_s) {
@@ -69,10 +72,6 @@ std::vector<TrackedPose> reported_poses(const PoseCourse& course, std::span<cons
     poses.push_back(reported(is_moved ? moved(pose, first, start) : pose, start, effects));
   }
   return poses;
-}
-
-double pose_needed_after_s(const physics::Effects& effects) {
-  return std::max(0.0, -late_s(effects));
 }
 
 }  // namespace kenaf::rollout

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,19 +30,17 @@ struct PoseCourse {
   TrackedPose at(double time_s) const;
 };
 
-// What fixes the frame of the reported poses.
-enum class Reference {
-  world,         // the reports are in the simulated world, and an early or late one at the start shows another place
-  first_report,  // the robot was put where it was first reported to be, as in a replay: that is the first reported pose
-};
+// How late the pose is reported; below 0 early, by a clock that is ahead.
+double late_s(const physics::Effects& effects);
 
 // Returns the poses that are reported at `row_s`. The effects act in the order delay and clock, point, turn, scale; the
 // point's offset is turned by yaw alone, without roll, pitch and z. A clock that is ahead needs poses after the last
 // row. With neutral effects returns the true poses, to the last bit.
+//
+// `first_report`: of the run that is replayed, if one is: reports that would begin elsewhere, as they are late or
+// early, are moved in the plane so that they begin there, as those of the real robot did.
 std::vector<TrackedPose> reported_poses(const PoseCourse& course, std::span<const double> row_s,
-                                        const physics::Effects& effects, Reference reference);
-
-// How long after the last row the pose must be known for that.
-double pose_needed_after_s(const physics::Effects& effects);
+                                        const physics::Effects& effects,
+                                        const std::optional<TrackedPose>& first_report);
 
 }  // namespace kenaf::rollout
