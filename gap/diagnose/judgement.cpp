@@ -222,13 +222,15 @@ std::vector<std::size_t> places_with_name(const StageDecision& decision) {
 }
 
 std::vector<std::size_t> places_to_keep(const StageDecision& decision) {
-  return places_where(decision,
-                      [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, is_misfit_of_kinds); });
+  return places_where(decision, [](const ModelEffect& effect) {
+    return effect.is_named_elsewhere || std::ranges::all_of(effect.doubts, is_misfit_of_kinds);
+  });
 }
 
 std::vector<std::size_t> places_to_try(const StageDecision& decision) {
-  return places_where(decision,
-                      [](const ModelEffect& effect) { return std::ranges::all_of(effect.doubts, depends_on_others); });
+  return places_where(decision, [](const ModelEffect& effect) {
+    return effect.is_named_elsewhere || std::ranges::all_of(effect.doubts, depends_on_others);
+  });
 }
 
 }  // namespace kenaf::gap::diagnose

@@ -33,7 +33,8 @@ void doubt_unless_simulated(StageDecision& decision, double on_runs, double on_m
 std::vector<std::size_t> places_not_refuted(const StageDecision& decision);
 // Places of the effects with a name.
 std::vector<std::size_t> places_with_name(const StageDecision& decision);
-// Those, and of effects that only resemble what they explain: without these, that would bend the others' values.
+// Those, and of effects that only resemble what they explain, or that another stage names: without these, what they
+// explain would bend the others' values.
 std::vector<std::size_t> places_to_keep(const StageDecision& decision);
 // Those, and of effects that only lack a share of the stage or of its model: these shares may change without the other
 // effects.

@@ -27,8 +27,8 @@ constexpr int kSectionsOfOff = 11;
 constexpr int kSizesOfOff = 48;  // of a posterior, equally spaced in the logarithm: 12 % apart
 // Limit of the length of the vector of all errors: twelve errors of kMostOff exceed it once in a thousand times.
 constexpr double kFarthestOff = 0.143;
-// A larger error is no small error (DecisionSettings::ordinary).
-constexpr double kOrdinary_sigma = 3;
+// A usual error, in sigma (chosen).
+constexpr double kUsual_sigma = 1;
 constexpr double kNoneOff = 1e-8;
 constexpr int kHalvingsOfOff = 20;
 
@@ -326,7 +326,7 @@ VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual
   const Index numbers = data.groups.front().number_shapes.cols();
   if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);
   const VectorXd sigmas = most_likely_amounts(whiteners_of(data, discrepancies), residual).tail(numbers);
-  return discrepancies.numbers_off * sigmas.cwiseMax(-kOrdinary_sigma).cwiseMin(kOrdinary_sigma);
+  return discrepancies.numbers_off * sigmas.cwiseMax(-kUsual_sigma).cwiseMin(kUsual_sigma);
 }
 
 double numbers_off_of_intervals(const StageData& data, const GroupVectors& residual, const Discrepancies& most_likely) {

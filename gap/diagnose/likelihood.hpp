@@ -89,7 +89,8 @@ GroupVectors without_open_shapes(const StageData& data, const GroupVectors& resi
                                  const Discrepancies& discrepancies);
 
 // Most likely error along each direction of the description's numbers, in the unit of StageGroup::number_shapes; at
-// most 3 sigma, sigma = discrepancies.numbers_off.
+// most 1 sigma, sigma = discrepancies.numbers_off. What larger errors could be instead of an effect, all of them
+// together, errors_of_values() says.
 Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual,
                                     const Discrepancies& discrepancies);
 

@@ -92,6 +92,30 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
   return refuted;
 }
 
+// Whether a stage lacks an effect that another one names, though it would gain as much evidence as the search asks for:
+// the stage dropped it, since it has no name there.
+bool lacks_named(const StageDecision& decision, const PreparedStage& prepared, Predictor& predictor,
+                 std::span<const NamedElsewhere> named, const DecisionSettings& settings) {
+  if (decision.effects.empty()) return false;
+  const Settings best = settings_of(decision.best.model.places);
+  for (const NamedElsewhere& other : named) {
+    if (has_effect(decision.best.model, other.candidate) || std::ranges::count(prepared.possible, other.candidate) == 0)
+      continue;
+    std::vector<Settings> asked{best};
+    for (const double value : {other.value.value, other.value.from, other.value.to}) {
+      asked.push_back(best);
+      asked.back().push_back({other.candidate, value});
+    }
+    const std::vector<GroupVectors> shifts = simulator_of(prepared, predictor)(asked, Fidelity::fine);
+    const double without = left_by(decision, shifts.front()).likelihood.deviance;
+    if (std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
+          return left_by(decision, shift).likelihood.deviance <= without - settings.evidence;
+        }))
+      return true;
+  }
+  return false;
+}
+
 // Whether a stage may decide differently.
 bool concerns(const StageDecision& decision, std::span<const candidates::Candidate> candidates,
               const Elsewhere& elsewhere) {
@@ -149,7 +173,8 @@ void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vect
       refuted[s].insert(refuted[s].end(), more.begin(), more.end());
       const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s],
                                 numbers_off_elsewhere(stages, stages[s].passage)};
-      if (concerns(stages[s].decision, prepared[s].candidates, elsewhere))
+      if (concerns(stages[s].decision, prepared[s].candidates, elsewhere) ||
+          lacks_named(stages[s].decision, prepared[s], predictor, elsewhere.named, options.decision))
         stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
     }
 }

@@ -20,7 +20,8 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
 double numbers_off_elsewhere(const std::vector<StageDiagnosis>& stages, Passage passage);
 
 // Decides a stage again if another one names a rival of one of its effects, or refutes the effect or a rival: with it,
-// together with the other's best model and alone, the other's residual grows. `prepared`: one per stage.
+// together with the other's best model and alone, the other's residual grows. Or if another one names an effect that the
+// stage dropped. `prepared`: one per stage.
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options);
 

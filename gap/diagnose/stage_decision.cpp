@@ -171,6 +171,7 @@ void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simu
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
     strike_rivals(d, i, curves.candidates, elsewhere);
     d.effects[i].refuted_by = elsewhere.refutes(d.effects[i].candidate);
+    d.effects[i].is_named_elsewhere = settled_elsewhere(d, i, curves.candidates, elsewhere.named) == kItself;
   }
   d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
   d.complete = d.p_left > settings.false_incomplete;

@@ -86,6 +86,7 @@ struct ModelEffect {
   // Error of the description's numbers, 1 sigma, in the unit of this one; 0 for other candidates.
   double ordinarily_off = 0;
   std::optional<Passage> refuted_by{};  // the stage that it does not fit
+  bool is_named_elsewhere = false;      // by another stage, at a value within both intervals
   // Difference from its present value at which errors of the description's numbers could not be its cause; 0 if there
   // are none.
   double sure_from = 0;

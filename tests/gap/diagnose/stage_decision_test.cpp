@@ -574,6 +574,12 @@ TEST_CASE("A look-alike stays in the model without a name, and what explains not
   CHECK(places_not_refuted(decision) == std::vector<std::size_t>{0, 1, 2, 3, 4});
   decision.effects[3].refuted_by = Passage::command_to_drive;
   CHECK(places_not_refuted(decision) == std::vector<std::size_t>{0, 1, 2, 4});
+
+  // nor does one that another stage names leave: its share here would be taken for a misfit of the others
+  decision.effects[4].is_named_elsewhere = true;
+  CHECK(places_to_keep(decision) == std::vector<std::size_t>{0, 1, 2, 4});
+  CHECK(places_to_try(decision) == std::vector<std::size_t>{0, 1, 2, 4});
+  CHECK(places_with_name(decision) == std::vector<std::size_t>{0});
 }
 
 // What an effect explains of a stage, and what its model explains, depends on the model's other effects; its value at
