@@ -269,7 +269,7 @@ std::vector<RollOut> roll_outs(std::span<const RobotDescription> robots, const p
     advance(time_of(step++));
     if (step % per_sample != 0) continue;
     const physics::RobotTruth later = scene.world.truth(scene.robot);
-    for (RunRecorder& recorder : recorders) recorder.add_later_pose(row_time(time_of(step)), later);
+    for (RunRecorder& recorder : recorders) recorder.add_pose(row_time(time_of(step)), later);
   }
 
   std::vector<RollOut> outs(robots.size(), out);

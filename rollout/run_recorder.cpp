@@ -179,14 +179,14 @@ void RunRecorder::add(double t_s, const robot::Command& command, const physics::
     course_.v_WB_mps = truth.v_WB_mps;
     course_.yaw_radps = truth.w_WB_radps.z();
   }
-  add_later_pose(t_s, truth);
+  add_pose(t_s, truth);
   const Eigen::Vector3d p_noise_m = mocap_noise_.normal3(mocap_noise_m_);
   pose_noise_.push_back({p_noise_m, mocap_noise_.normal(mocap_noise_rad_)});
   for (const physics::SensorSample& sample : samples)
     std::visit([this](const auto& reading) { put_reading(reading); }, sample.reading);
 }
 
-void RunRecorder::add_later_pose(double t_s, const physics::RobotTruth& truth) {
+void RunRecorder::add_pose(double t_s, const physics::RobotTruth& truth) {
   course_.t_s.push_back(t_s);
   course_.pose.push_back({truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
 }

@@ -25,8 +25,9 @@ class RunRecorder {
 
   void add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
            std::span<const physics::SensorSample> samples);
-  // A pose after the last row, which motion capture with a clock that is ahead shows in one of the rows.
-  void add_later_pose(double t_s, const physics::RobotTruth& truth);
+  // A pose after the last row, which motion capture with a clock that is ahead shows in one of the rows. (That of a row
+  // is added with it.)
+  void add_pose(double t_s, const physics::RobotTruth& truth);
   // Returns the rows that were added and empties the recorder.
   runs::Run take();
 

@@ -48,6 +48,13 @@ std::vector<Setting> values_of(const ModelEffect& effect, const Setting& setting
   return values;
 }
 
+// Of these, the ones that act in a stage.
+std::vector<NamedElsewhere> acting_in(const PreparedStage& prepared, std::vector<NamedElsewhere> named) {
+  std::erase_if(
+      named, [&](const NamedElsewhere& other) { return std::ranges::count(prepared.possible, other.candidate) == 0; });
+  return named;
+}
+
 // Effects that stages other than `s` name without rivals.
 std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
   std::vector<NamedElsewhere> named;
@@ -92,30 +99,6 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
   return refuted;
 }
 
-// Whether a stage lacks an effect that another one names, though it would gain as much evidence as the search asks for:
-// the stage dropped it, since it has no name there.
-bool lacks_named(const StageDecision& decision, const PreparedStage& prepared, Predictor& predictor,
-                 std::span<const NamedElsewhere> named, const DecisionSettings& settings) {
-  if (decision.effects.empty()) return false;
-  const Settings best = settings_of(decision.best.model.places);
-  for (const NamedElsewhere& other : named) {
-    if (has_effect(decision.best.model, other.candidate) || std::ranges::count(prepared.possible, other.candidate) == 0)
-      continue;
-    std::vector<Settings> asked{best};
-    for (const double value : {other.value.value, other.value.from, other.value.to}) {
-      asked.push_back(best);
-      asked.back().push_back({other.candidate, value});
-    }
-    const std::vector<GroupVectors> shifts = simulator_of(prepared, predictor)(asked, Fidelity::fine);
-    const double without = left_by(decision, shifts.front()).likelihood.deviance;
-    if (std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
-          return left_by(decision, shift).likelihood.deviance <= without - settings.evidence;
-        }))
-      return true;
-  }
-  return false;
-}
-
 // Whether a stage may decide differently.
 bool concerns(const StageDecision& decision, std::span<const candidates::Candidate> candidates,
               const Elsewhere& elsewhere) {
@@ -155,6 +138,25 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
   return true;
 }
 
+bool lacks(const StageDecision& decision, const Simulate& simulate, std::span<const NamedElsewhere> named,
+           const DecisionSettings& settings) {
+  if (decision.effects.empty()) return false;
+  const Settings best = settings_of(decision.best.model.places);
+  return std::ranges::any_of(named, [&](const NamedElsewhere& other) {
+    if (has_effect(decision.best.model, other.candidate)) return false;
+    std::vector<Settings> asked{best};
+    for (const double value : {other.value.value, other.value.from, other.value.to}) {
+      asked.push_back(best);
+      asked.back().push_back({other.candidate, value});
+    }
+    const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::fine);
+    const double without = left_by(decision, shifts.front()).likelihood.deviance;
+    return std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
+      return left_by(decision, shift).likelihood.deviance <= without - settings.evidence;
+    });
+  });
+}
+
 double numbers_off_elsewhere(const std::vector<StageDiagnosis>& stages, Passage passage) {
   double largest = 0;
   if (passage != Passage::body_to_sensor) return largest;
@@ -174,7 +176,8 @@ void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vect
       const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s],
                                 numbers_off_elsewhere(stages, stages[s].passage)};
       if (concerns(stages[s].decision, prepared[s].candidates, elsewhere) ||
-          lacks_named(stages[s].decision, prepared[s], predictor, elsewhere.named, options.decision))
+          lacks(stages[s].decision, simulator_of(prepared[s], predictor), acting_in(prepared[s], elsewhere.named),
+                options.decision))
         stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
     }
 }

@@ -164,6 +164,24 @@ TEST_CASE("A stage refutes an effect where it acts there, whatever else remains"
   CHECK_FALSE(refuted(in_x + effects[3]));
 }
 
+TEST_CASE("A stage lacks an effect that another one names if its residual has it, at the value found there") {
+  // 0.4 of effect 6 lowers the deviance by the squares of 0.4 * 60
+  const std::vector<Whole> effects = orthogonal_effects();
+  const Whole gap = 0.5 * effects[1] - 0.4 * effects[6] + world().noise(1);
+  StageDecision decision;
+  decision.data = world().data(gap);
+  decision.best = world().fitted(effects, decision.data, {1});
+  decision.effects.emplace_back();
+  const auto is_lacking = [&](const NamedElsewhere& named) {
+    return lacks(decision, world().simulate(LinearWorld::linear(effects)), {&named, 1}, {});
+  };
+  CHECK(is_lacking({6, {-0.4, -0.45, -0.35}}));
+  CHECK(is_lacking({6, {-0.9, -1.4, -0.4}}));  // an end of the interval fits
+  CHECK_FALSE(is_lacking({6, {0.4, 0.35, 0.45}}));
+  CHECK_FALSE(is_lacking({7, {-0.4, -0.45, -0.35}}));
+  CHECK_FALSE(is_lacking({1, {0.5, 0.45, 0.55}}));  // it has that
+}
+
 TEST_CASE("At 45 degrees they are distinguishable") {
   for (const std::size_t truth : {2u, 5u}) {
     const std::vector<Whole> effects = with_look_alike(45);
