@@ -78,18 +78,29 @@ void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<SetOfEffe
   const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
   const auto alone = [&](std::size_t place) { return std::max(0.0, effects[place].share.of_stage); };
 
-  // an effect is in one set at most; with a name of its own only in one whose members substitute for it
-  const auto may_join = [&](std::size_t place) {
-    return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
+  // enough of a share, but a misfit, which others may take up
+  const auto only_misfits = [&](std::size_t place) {
+    return !is_named(place) && std::ranges::all_of(effects[place].doubts, is_misfit_of_one);
   };
-  const auto substitute = [&](const SetOfEffects& set) {
+
+  // An effect is in one set at most; with a name of its own only in one whose members substitute for it, and if it
+  // misfits only in one whose members do enough together that none does alone.
+  const auto may_join = [&](std::size_t place) {
+    return effects[place].partners.empty() && (lacks_share(place) || is_named(place) || only_misfits(place));
+  };
+  const auto sum_alone = [&](const SetOfEffects& set) {
     double sum = 0;
     for (const std::size_t place : set.places) sum += alone(place);
-    return set.share.of_stage > kCommon * sum;
+    return sum;
+  };
+  const auto substitute = [&](const SetOfEffects& set) { return set.share.of_stage > kCommon * sum_alone(set); };
+  const auto do_together = [&](const SetOfEffects& set) {
+    return set.share.of_stage - sum_alone(set) >= settings.stage_share;
   };
   const auto is_named_together = [&](const SetOfEffects& set) {
     return std::ranges::all_of(set.places, may_join) && std::ranges::any_of(set.places, lacks_share) &&
-           explains_enough(set, settings) && (std::ranges::none_of(set.places, is_named) || substitute(set));
+           explains_enough(set, settings) && (std::ranges::none_of(set.places, is_named) || substitute(set)) &&
+           (std::ranges::none_of(set.places, only_misfits) || do_together(set));
   };
 
   // whether one more effect without a share explains so much more with the set than by itself that it would be a cause

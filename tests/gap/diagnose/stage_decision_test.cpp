@@ -497,6 +497,22 @@ TEST_CASE("Of a lag and a ramp, which together are one step's course, neither is
   CHECK(decision.effects[0].partners == std::vector<std::size_t>{1});
 }
 
+TEST_CASE(
+    "A misfit with a share of its own joins a set only if its members do something together that none does alone") {
+  // the second one has 0.22 by itself, and a trend; the first one has 0.05
+  const auto verdict = [](double both) {
+    StageDecision decision;
+    for (const std::size_t c : {0u, 1u})
+      decision.effects.push_back({c, {{1, 0.9, 1.1}, 0, 1, c == 1 ? 1.2 : 0}, 100, {}, {}, false, {}, {c}, {}, {}});
+    const auto share = [](double taken) { return HeldOutShares::OfEffect{taken, taken, taken, 0, 0.9, 1000}; };
+    const HeldOutShares shares{{share(0.05), share(0.22)}, {{{0, 1}, share(both)}}, 0.9};
+    judge(decision, std::vector<Candidate>(2), shares, shares, {});
+    return decision.verdict;
+  };
+  CHECK(verdict(0.38) == Verdict::ambiguous);  // 0.11 of it together: a share that would give a name
+  CHECK(verdict(0.36) == Verdict::unknown);    // 0.09: a look-alike with something small beside it
+}
+
 TEST_CASE("Half of what ordinary numbers leave is negligible where they leave next to nothing") {
   const auto verdict = [](double of_stage, double beyond_numbers) {
     StageDecision decision;
