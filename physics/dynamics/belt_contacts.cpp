@@ -65,6 +65,17 @@ void outline_points(const BeltShape& belt, const btVector3& normal, const Use& u
     use(static_cast<std::uint32_t>(i + 1), i, from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
 }
 
+// Over the belt's two discs: the least and the greatest height above a plane through T's origin that the lowest point
+// of a disc has, half way across. `in_plane`: length of the part of `normal` in the slices' plane.
+struct LowestPoints {
+  btScalar least, greatest;
+};
+LowestPoints lowest_points(const BeltShape& belt, const btVector3& normal, btScalar in_plane) {
+  const auto [least, greatest] =
+      std::minmax({-in_plane * belt.radius[0], normal.x() * belt.length - in_plane * belt.radius[1]});
+  return {least, greatest};
+}
+
 // The points of the outline that stand for the belt's side face where it meets a wall: the ends of both runs, and both
 // tips.
 template <typename Use>
@@ -137,18 +148,20 @@ class BoxTouches {
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
     box_side_ = c.y() > 0 ? 1 : -1;
     if (overlap_ <= 0) return;
-    set_corners();
 
     // Faces, edges and corners within the belt's width.
     const Slices s = slices(belt_, kBoxSlices);
     faces(s);
-    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
-      const BoxEdge edge = box_edge(e);
-      if (beyond_[edge.from] & beyond_[edge.to]) continue;  // both beyond one side
-      edge_in_slices(edge, e, s);
-      inner_edge(edge, e, s);
+    if (may_meet_edges()) {
+      set_corners();
+      for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
+        const BoxEdge edge = box_edge(e);
+        if (beyond_[edge.from] & beyond_[edge.to]) continue;  // both beyond one side
+        edge_in_slices(edge, e, s);
+        inner_edge(edge, e, s);
+      }
+      corners();
     }
-    corners();
 
     // Where the shortest way out is sideways, the box is a wall beside the belt.
     if (overlap_ < deepest_m_ && overlap_ < depth_in_plane()) touch_side_face();
@@ -161,8 +174,13 @@ class BoxTouches {
     if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, run_place, id});
   }
 
+  // How far below a face the outline's lowest point lies, and the shallowest of those that could touch it.
+  struct Depth {
+    btScalar lowest, shallowest;
+  };
+
   // Calls use(axis, sign, normal, flat, depth) for each face that is not beside the slices; `flat` is the normal's part
-  // in the slices' plane, of unit length, `depth` how far the belt reaches below the face.
+  // in the slices' plane, of unit length.
   template <typename Use>
   void for_each_face(Use&& use) const {
     for (int j = 0; j < 3; ++j) {
@@ -172,12 +190,27 @@ class BoxTouches {
       const btVector3 flat(axis.x() / in_plane, 0, axis.z() / in_plane);
       const btScalar center = axis.dot(box_.center), across = btFabs(axis.y()) * belt_.half_width;
       for (const int sign : {-1, 1}) {
-        // half + n . centre - the least n . p of the swept discs, whose centres are at 0 and at (length, 0, 0)
-        const btScalar lowest =
-            std::min(-in_plane * belt_.radius[0], sign * axis.x() * belt_.length - in_plane * belt_.radius[1]) - across;
-        use(j, sign, axis * sign, flat * sign, box_.half[j] + sign * center - lowest);
+        const btVector3 normal = axis * sign;
+        const LowestPoints points = lowest_points(belt_, normal, in_plane);
+        const btScalar surface = box_.half[j] + sign * center;
+        use(j, sign, normal, flat * sign,
+            Depth{surface - (points.least - across), surface - (points.greatest + across)});
       }
     }
+  }
+
+  // Whether faces of two of the box's axes cut the belt's bounding box: only there an edge may pass through it.
+  bool may_meet_edges() const {
+    const btScalar back = -belt_.radius[0] - kTouching_m, front = belt_.length + belt_.radius[1] + kTouching_m;
+    const btVector3 half((front - back) / 2, belt_.half_width,
+                         std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m);
+    const btVector3 from_center = btVector3((back + front) / 2, 0, 0) - box_.center;
+    int cut = 0;
+    for (int j = 0; j < 3; ++j) {
+      const btVector3 axis = box_.axes.getColumn(j);
+      cut += btFabs(btFabs(axis.dot(from_center)) - box_.half[j]) <= axis.absolute().dot(half);
+    }
+    return cut >= 2;
   }
 
   // Corners, and beyond which of the sides of the belt's bounding box each lies, a bit for a side.
@@ -198,14 +231,15 @@ class BoxTouches {
   // The least displacement within the slices' plane that frees the belt from the box; negative: it is free.
   btScalar depth_in_plane() const {
     btScalar least = BT_LARGE_FLOAT;
-    for_each_face(
-        [&](int, int, const btVector3&, const btVector3&, btScalar depth) { least = std::min(least, depth); });
+    for_each_face([&](int, int, const btVector3&, const btVector3&, const Depth& depth) {
+      least = std::min(least, depth.lowest);
+    });
     return least;
   }
 
   void faces(const Slices& s) {
-    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat, btScalar depth) {
-      if (depth < -kTouching_m) return;
+    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat, const Depth& depth) {
+      if (depth.lowest < -kTouching_m || depth.shallowest > deepest_m_) return;
       const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
       outline_points(belt_, flat, [&](std::uint32_t place, int run_place, const btVector3& p, btScalar weight) {
         face_points(j, normal, face, s, place, run_place, p, weight);
@@ -312,6 +346,7 @@ class BoxTouches {
   // The belt's side face against the box; replaces all contacts that were found in the slices.
   void touch_side_face() {
     out_.resize(first_);
+    set_corners();
 
     // The normal: that of the box's face that faces the belt's side face, if it is within 32 degrees of the belt's
     // axis; else that axis.
@@ -380,7 +415,9 @@ void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset
     return;
   }
 
-  // Ground: the outline's points at both edges of the belt.
+  // Ground: the outline's points at both edges of the belt, if one of them can be near.
+  const btScalar lowest = lowest_points(belt, normal, in_plane).least - btFabs(normal.y()) * belt.half_width;
+  if (lowest - offset > kTouching_m) return;
   const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
   for (const std::uint32_t slice : {0u, 1u})
     outline_points(belt, flat, [&](std::uint32_t place, int run_place, const btVector3& p, btScalar weight) {

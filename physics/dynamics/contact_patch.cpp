@@ -102,19 +102,13 @@ Meeting::Meeting(const btCollisionObject& a, const btCollisionObject& b, const C
       warm_start_share(
           std::min(on_a.belt ? on_a.belt->warm_start_share : 1, on_b.belt ? on_b.belt->warm_start_share : 1)) {}
 
-InPatch BodyInPatch::change_by(const InPatch& impulse) const {
-  const Two& turn = impulse.angular;
-  InPatch change{impulse.linear * inverse_mass,
-                 turn_by_along * turn[0] + turn_by_across * turn[1] + turn_by_normal * impulse.angular_n,
-                 impulse.linear_n * inverse_mass,
-                 sum_of_lanes(turn_by_normal * turn) + turn_n_by_n * impulse.angular_n};
+void BodyInPatch::add_yielding(InPatch& change, const InPatch& impulse) const {
   for (std::size_t i = 0; i < loose_count; ++i) change = change + loose[i] * dot(loose[i], impulse);
   if (arm_mobility > 0) {
     const btScalar on_arm = dot(unit_rate, impulse);
     change = change + unit_rate * (arm_alone * on_arm - arm_mobility * dot(response, impulse)) -
              response * (arm_mobility * on_arm);
   }
-  return change;
 }
 
 void BodyInPatch::add_yielding(MobilityAtPlace& m, const PlaceInPatch& r) const {

@@ -114,8 +114,20 @@ struct BodyInPatch {
   // What its contacts see, by an impulse on it.
   InPatch change_by(const InPatch& impulse) const;
   MobilityAtPlace mobility_at(const PlaceInPatch& r) const;
-  void add_yielding(MobilityAtPlace& m, const PlaceInPatch& r) const;  // to that of stiff hinges
+  // To those of stiff hinges.
+  void add_yielding(InPatch& change, const InPatch& impulse) const;
+  void add_yielding(MobilityAtPlace& m, const PlaceInPatch& r) const;
 };
+
+inline InPatch BodyInPatch::change_by(const InPatch& impulse) const {
+  const Two& turn = impulse.angular;
+  InPatch change{impulse.linear * inverse_mass,
+                 turn_by_along * turn[0] + turn_by_across * turn[1] + turn_by_normal * impulse.angular_n,
+                 impulse.linear_n * inverse_mass,
+                 sum_of_lanes(turn_by_normal * turn) + turn_n_by_n * impulse.angular_n};
+  if (loose_count > 0) add_yielding(change, impulse);
+  return change;
+}
 
 // With t = (-r_across, r_along), h = r_normal and the inverse inertia Q, the moments of unit impulses are
 //   along (0, h, t_0)      across (-h, 0, t_1)      normal (-t_0, -t_1, 0)

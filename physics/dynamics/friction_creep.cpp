@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <utility>
+
 namespace kenaf::physics {
 namespace {
 
@@ -34,7 +36,7 @@ void FrictionCreep::lose(const ContactPatch& patch, const InPatch& lost_ns, btSc
 }
 
 bool FrictionCreep::matters() const {
-  constexpr btScalar kTrifle = 1e-6;  // of what presses; the iterations leave 1e-5
+  constexpr btScalar kTrifle = 1e-6;  // of what presses; far less than the iterations leave
   return sum_of_lanes(dot(lost_, lost_)) > kTrifle * kTrifle * pressing_ns_ * pressing_ns_;
 }
 
@@ -44,8 +46,9 @@ void FrictionCreep::add_springs(const ContactPatch& patch, const SpringsInPatch&
       patch.along_W.y(), patch.across_W.y(), patch.normal_W.y(),      //
       patch.along_W.z(), patch.across_W.z(), patch.normal_W.z();
   const Eigen::Matrix<double, 6, 6> in_patch = springs.stiffness();
-  for (const int i : {0, 3})
-    for (const int j : {0, 3}) stiffness_.block<3, 3>(i, j) += R_WF * in_patch.block<3, 3>(i, j) * R_WF.transpose();
+  // The lower triangle, all that the decomposition reads.
+  for (const auto& [i, j] : {std::pair{0, 0}, {3, 0}, {3, 3}})
+    stiffness_.block<3, 3>(i, j) += R_WF * in_patch.block<3, 3>(i, j) * R_WF.transpose();
 }
 
 TwoVectors FrictionCreep::given_back() const {
