@@ -1,6 +1,7 @@
 #include "gap/diagnose/discrepancy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -59,17 +60,60 @@ double innovation_of(double value, double& state, double decay, double gain, dou
   return innovation * inverse_sigma;
 }
 
-// Minus twice the log-likelihood of one series; `decays`: of its bins. `white` is overwritten.
-double minus_two_log_likelihood(const SeriesOfKind& series, std::span<const double> decays, double sigma,
-                                Eigen::VectorXd& white) {
-  white.resize(series.value.size());
-  double state = 0;
-  const double log_determinant =
-      filter(decays, series.variance, sigma, [&](std::size_t i, double gain, double inverse_sigma) {
-        const auto row = static_cast<Eigen::Index>(i);
-        white[row] = innovation_of(series.value[row], state, decays[i], gain, inverse_sigma);
-      });
-  return white.squaredNorm() + log_determinant;
+// A number for each of kMemories_s. Likelihoods are computed for all of them at once: a filter is one long chain of
+// divisions, and a processor works on several such chains in the time of one.
+constexpr std::size_t kMemories = std::size(kMemories_s);
+using EachMemory = std::array<double, kMemories>;
+
+// For each bin of a series.
+std::vector<EachMemory> decays_with_each_memory(std::span<const double> t_s) {
+  std::vector<EachMemory> decays(t_s.size());
+  for (std::size_t m = 0; m < kMemories; ++m) {
+    const std::vector<double> with_memory = decays_of(t_s, kMemories_s[m]);
+    for (std::size_t i = 0; i < decays.size(); ++i) decays[i][m] = with_memory[i];
+  }
+  return decays;
+}
+
+// The sum of logarithms of numbers > 0, by few logarithms.
+class LogSum {
+ public:
+  void add(double x) {
+    product_ *= x;
+    if (product_ > kLeast && product_ < 1 / kLeast) return;
+    sum_ += std::log(product_);
+    product_ = 1;
+  }
+  double value() const { return sum_ + std::log(product_); }
+
+ private:
+  static constexpr double kLeast = 1e-100;
+  double product_ = 1, sum_ = 0;
+};
+
+// Minus twice the log-likelihood of one series with each memory and its sigma: filter() and innovation_of(), without
+// what only a whitener needs. `decays`: of its bins.
+EachMemory minus_two_log_likelihood(const SeriesOfKind& series, std::span<const EachMemory> decays,
+                                    const EachMemory& sigma) {
+  EachMemory process, known, state{}, squares{};
+  std::array<LogSum, kMemories> log_determinant;
+  for (std::size_t m = 0; m < kMemories; ++m) known[m] = process[m] = sigma[m] * sigma[m];
+  for (std::size_t i = 0; i < decays.size(); ++i) {
+    const double value = series.value[static_cast<Eigen::Index>(i)];
+    const double noise = series.variance[static_cast<Eigen::Index>(i)];
+    for (std::size_t m = 0; m < kMemories; ++m) {
+      const double f = decays[i][m], predicted = f * f * known[m] + process[m] * (1 - f * f);
+      const double innovation_variance = predicted + noise, inverse = 1 / innovation_variance;
+      const double gain = predicted * inverse, innovation = value - f * state[m];
+      known[m] = gain * noise;
+      state[m] = f * state[m] + gain * innovation;
+      squares[m] += innovation * innovation * inverse;
+      log_determinant[m].add(innovation_variance);
+    }
+  }
+  EachMemory sum;
+  for (std::size_t m = 0; m < kMemories; ++m) sum[m] = squares[m] + log_determinant[m].value();
+  return sum;
 }
 
 }  // namespace
@@ -103,33 +147,31 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   }
   Discrepancy best;
   if (bins == 0 || squares == 0) return best;
-  // of all series for a sigma, given the decays of each
-  Eigen::VectorXd white;
-  const auto deviance = [&](const std::vector<std::vector<double>>& decays, double sigma) {
-    double sum = 0;
-    for (std::size_t i = 0; i < series.size(); ++i)
-      sum += series[i].weight * minus_two_log_likelihood(series[i], decays[i], sigma, white);
+  // of all series
+  std::vector<std::vector<EachMemory>> decays;
+  for (const SeriesOfKind& one : series) decays.push_back(decays_with_each_memory(one.t_s));
+  const auto deviance = [&](const EachMemory& sigma) {
+    EachMemory sum{};
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      const EachMemory of_series = minus_two_log_likelihood(series[i], decays[i], sigma);
+      for (std::size_t m = 0; m < kMemories; ++m) sum[m] += series[i].weight * of_series[m];
+    }
     return sum;
   };
-  const auto decays_with = [&](double memory_s) {
-    std::vector<std::vector<double>> decays;
-    for (const SeriesOfKind& one : series) decays.push_back(decays_of(one.t_s, memory_s));
-    return decays;
-  };
-  double least = deviance(decays_with(best.memory_s), best.sigma);
+  double least = deviance({})[0];  // without a discrepancy, whatever its memory
   // from invisible beneath the noise to more than the residuals
   const double from = std::log(0.03 * std::sqrt(noise)), to = std::log(10 * std::sqrt(squares / bins));
   if (!(from < to)) return best;
 
   // for each memory the best sigma; sigma 0 stays if no other is more likely
-  for (const double memory_s : kMemories_s) {
-    const auto decays = decays_with(memory_s);
-    const auto [log_sigma, value] =
-        golden_section(from, to, kSections, [&](double at) { return deviance(decays, std::exp(at)); });
-    if (value < least) {
-      least = value;
-      best = {std::exp(log_sigma), memory_s};
-    }
+  const auto minima = golden_sections<kMemories>(from, to, kSections, [&](EachMemory log_sigma) {
+    for (double& at : log_sigma) at = std::exp(at);
+    return deviance(log_sigma);
+  });
+  for (std::size_t m = 0; m < kMemories; ++m) {
+    if (minima[m].value >= least) continue;
+    least = minima[m].value;
+    best = {std::exp(minima[m].at), kMemories_s[m]};
   }
   return best;
 }

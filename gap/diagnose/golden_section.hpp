@@ -3,29 +3,62 @@
 // Thread safety: a pure function, if `function` is.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <numbers>
-#include <utility>
 
 namespace kenaf::gap::diagnose {
 
-// Returns the location of the minimum of `function` in [low, high] and its value: the better of the last two
-// evaluations. `sections`: evaluations after the first two, each of which reduces the interval to 0.618. Finds a local
-// minimum if there are several.
-template <class Function>
-std::pair<double, double> golden_section(double low, double high, int sections, Function&& function) {
+struct Minimum {
+  double at, value;
+};
+
+// N searches side by side, each from `low` to `high`, for functions that cost less together:
+// `function(std::array<double, N>)` returns the array of their values, each at its own place. Returns for each the
+// location of its minimum and its value: the better of the last two evaluations. `sections`: evaluations after the
+// first two, each of which reduces the interval to 0.618. Finds a local minimum if there are several.
+template <std::size_t N, class Functions>
+std::array<Minimum, N> golden_sections(double low, double high, int sections, Functions&& functions) {
   constexpr double kPart = std::numbers::phi - 1;
-  double a = high - kPart * (high - low), b = low + kPart * (high - low);
-  double at_a = function(a), at_b = function(b);
+  struct Bracket {
+    double low, high, a, b;
+    bool left;  // the minimum is on the left of b
+  };
+  const double a = high - kPart * (high - low), b = low + kPart * (high - low);
+  std::array<Bracket, N> bracket;
+  bracket.fill({low, high, a, b, false});
+  std::array<double, N> place;
+  place.fill(a);
+  std::array<double, N> at_a = functions(place);
+  place.fill(b);
+  std::array<double, N> at_b = functions(place);
   for (int i = 0; i < sections; ++i) {
-    if (at_a < at_b) {
-      high = b, b = a, at_b = at_a;
-      a = high - kPart * (high - low), at_a = function(a);
-    } else {
-      low = a, a = b, at_a = at_b;
-      b = low + kPart * (high - low), at_b = function(b);
+    for (std::size_t k = 0; k < N; ++k) {
+      Bracket& of = bracket[k];
+      of.left = at_a[k] < at_b[k];
+      if (of.left) {
+        of.high = of.b, of.b = of.a, at_b[k] = at_a[k];
+        place[k] = of.a = of.high - kPart * (of.high - of.low);
+      } else {
+        of.low = of.a, of.a = of.b, at_a[k] = at_b[k];
+        place[k] = of.b = of.low + kPart * (of.high - of.low);
+      }
     }
+    const std::array<double, N> value = functions(place);
+    for (std::size_t k = 0; k < N; ++k) (bracket[k].left ? at_a : at_b)[k] = value[k];
   }
-  return at_a < at_b ? std::pair{a, at_a} : std::pair{b, at_b};
+  std::array<Minimum, N> minima;
+  for (std::size_t k = 0; k < N; ++k)
+    minima[k] = at_a[k] < at_b[k] ? Minimum{bracket[k].a, at_a[k]} : Minimum{bracket[k].b, at_b[k]};
+  return minima;
+}
+
+// One search.
+template <class Function>
+Minimum golden_section(double low, double high, int sections, Function&& function) {
+  return golden_sections<1>(low, high, sections, [&](const std::array<double, 1>& at) {
+    return std::array<double, 1>{function(at[0])};
+  })[0];
 }
 
 }  // namespace kenaf::gap::diagnose
