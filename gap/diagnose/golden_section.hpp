@@ -56,9 +56,8 @@ std::array<Minimum, N> golden_sections(double low, double high, int sections, Fu
 // One search.
 template <class Function>
 Minimum golden_section(double low, double high, int sections, Function&& function) {
-  return golden_sections<1>(low, high, sections, [&](const std::array<double, 1>& at) {
-    return std::array<double, 1>{function(at[0])};
-  })[0];
+  return golden_sections<1>(low, high, sections,
+                            [&](const std::array<double, 1>& at) { return std::array<double, 1>{function(at[0])}; })[0];
 }
 
 }  // namespace kenaf::gap::diagnose

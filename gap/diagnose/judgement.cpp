@@ -187,7 +187,6 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
     if (effect.value.trend > settings.steady * change) effect.doubts.push_back(Doubt::trend);
     if (effect.value.by_kind.apart > settings.alike * change) effect.doubts.push_back(Doubt::kinds_differ);
     if (effect.value.by_kind.left > settings.left_of_kind) effect.doubts.push_back(Doubt::leaves_much);
-    if (effect.refuted_by) effect.doubts.push_back(Doubt::refuted);
     if (!(least(&Share::of_kind) >= settings.effect_share))
       effect.doubts.push_back(Doubt::not_held_out);
     else if (!(least(&Share::of_stage) >= settings.stage_share) ||
@@ -222,10 +221,6 @@ void doubt_uncertain_values(StageDecision& d, std::span<const candidates::Candid
       effect.doubts.push_back(Doubt::uncertain);
   }
   d.verdict = verdict_of(d.effects);
-}
-
-std::vector<std::size_t> places_not_refuted(const StageDecision& decision) {
-  return places_where(decision, [](const ModelEffect& effect) { return !effect.refuted_by; });
 }
 
 std::vector<std::size_t> places_with_name(const StageDecision& decision) {

@@ -29,8 +29,6 @@ void judge(StageDecision& decision, std::span<const candidates::Candidate> candi
 void doubt_unless_simulated(StageDecision& decision, double on_runs, double on_manoeuvres,
                             const DecisionSettings& settings);
 
-// Places of the effects that no other stage refutes.
-std::vector<std::size_t> places_not_refuted(const StageDecision& decision);
 // Places of the effects with a name.
 std::vector<std::size_t> places_with_name(const StageDecision& decision);
 // Those, and of effects that only resemble what they explain, or that another stage names: without these, what they

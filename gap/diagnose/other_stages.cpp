@@ -73,7 +73,7 @@ bool is_misfit(const StageDecision& decision, std::size_t candidate) {
 }
 
 // The effects of stage `s` and their rivals that another stage refutes: one that it needs, but that does not fit there,
-// or one that would increase its residual.
+// or one that would increase its residual, also if it has it at another value.
 std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s,
                                                 const std::vector<PreparedStage>& prepared, Predictor& predictor,
                                                 const DecisionSettings& settings) {
@@ -86,13 +86,9 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
         const Setting& setting = model[e];
         const bool acts = std::ranges::count(prepared[other].possible, setting.candidate) > 0;
         if (other == s || !acts) continue;
-        if (has_effect(stages[other].decision.best.model, setting.candidate)) {
-          if (is_misfit(stages[other].decision, setting.candidate))
-            refuted.push_back({setting.candidate, stages[other].passage});
-          continue;
-        }
         const std::vector<Setting> values = values_of(decision.effects[e], setting, prepared[other].candidates);
-        if (refutes(stages[other].decision, simulator_of(prepared[other], predictor), values, settings))
+        if (is_misfit(stages[other].decision, setting.candidate) ||
+            refutes(stages[other].decision, simulator_of(prepared[other], predictor), values, settings))
           refuted.push_back({setting.candidate, stages[other].passage});
       }
   }
@@ -118,7 +114,9 @@ bool concerns(const StageDecision& decision, std::span<const candidates::Candida
 
 bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
              const DecisionSettings& settings) {
-  for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {
+  Settings others = settings_of(decision.best.model.places);
+  std::erase_if(others, [&](const Setting& own) { return own.candidate == values.front().candidate; });
+  for (const Settings& beside : {others, Settings{}}) {
     std::vector<Settings> asked{beside};
     for (const Setting& value : values) {
       asked.push_back(beside);
@@ -171,8 +169,9 @@ void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vect
   std::vector<std::vector<RefutedElsewhere>> refuted(stages.size());
   for (int round = 0; round < kMostHearings; ++round)
     for (std::size_t s = 0; s < stages.size(); ++s) {
-      const std::vector<RefutedElsewhere> more = refuted_elsewhere(stages, s, prepared, predictor, options.decision);
-      refuted[s].insert(refuted[s].end(), more.begin(), more.end());
+      for (const RefutedElsewhere& more : refuted_elsewhere(stages, s, prepared, predictor, options.decision))
+        if (std::ranges::count(refuted[s], more.candidate, &RefutedElsewhere::candidate) == 0)
+          refuted[s].push_back(more);
       const Elsewhere elsewhere{named_elsewhere(stages, s), refuted[s],
                                 numbers_off_elsewhere(stages, stages[s].passage)};
       if (concerns(stages[s].decision, prepared[s].candidates, elsewhere) ||

@@ -10,8 +10,9 @@
 
 namespace kenaf::gap::diagnose {
 
-// Whether a candidate would increase the residual of a stage at each of its `values`, together with the stage's best
-// model and alone: the deviance, and the squares of the kinds of channels in which it acts there.
+// Whether a candidate would increase the residual of a stage at each of its `values` (at least one), together with the
+// rest of the stage's best model and alone: the deviance, and the squares of the kinds of channels in which it acts
+// there.
 bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
              const DecisionSettings& settings);
 

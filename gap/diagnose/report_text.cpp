@@ -69,6 +69,11 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
     screen.add(line, "    ");
   }
 
+  // what other stages refute
+  for (const RefutedElsewhere& refuted : stage.refuted)
+    screen.add(fmt::format("  {}: left out, as it does not fit the gap from {}", d.candidates[refuted.candidate].name,
+                           passage_name(refuted.by)));
+
   // what is left, with the strongest dependence and what to look at
   std::string left = left_in_words(stage);
   if (!stage.left_over.empty() && !stage.decision.complete) {

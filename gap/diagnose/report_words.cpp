@@ -311,9 +311,6 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& 
             "simulated on a manoeuvre that the fit did not have, the model explains too little of the stage's gap: "
             "drive another one that shows it");
         break;
-      case Doubt::refuted:
-        words.push_back(fmt::format("it does not fit the gap from {}", passage_name(*effect.refuted_by)));
-        break;
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;

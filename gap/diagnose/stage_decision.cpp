@@ -129,38 +129,23 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   }
 }
 
-// The rival that replaces an effect because of other stages: the first that one names, or if one refutes the effect,
-// the first that none refutes.
-std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t effect,
-                                          std::span<const candidates::Candidate> candidates,
-                                          const Elsewhere& elsewhere) {
-  if (const auto named = settled_elsewhere(d, effect, candidates, elsewhere.named)) return named;
-  const std::vector<Settings>& models = d.models_of_rivals[effect];
-  for (std::size_t r = 0; r < models.size(); ++r)
-    if (!elsewhere.refutes(models[r][effect].candidate)) return r;
-  return std::nullopt;
+// Without what other stages refute: no search finds it.
+EffectCurves not_refuted(EffectCurves curves, const Elsewhere& elsewhere) {
+  std::vector<std::size_t> kept;
+  for (const EffectCurve& curve : curves.curves)
+    if (!elsewhere.refutes(curve.candidate)) kept.push_back(curve.candidate);
+  forget_all_but(curves, kept);
+  return curves;
 }
 
-// Drops rivals that another stage refutes, and all if another stage has settled the effect.
-void strike_rivals(StageDecision& d, std::size_t effect, std::span<const candidates::Candidate> candidates,
-                   const Elsewhere& elsewhere) {
-  std::vector<Settings>& models = d.models_of_rivals[effect];
-  if (settled_elsewhere(d, effect, candidates, elsewhere.named) == kItself) models.resize(kItself + 1);
-  const auto is_refuted = [&](const Settings& model) { return elsewhere.refutes(model[effect].candidate).has_value(); };
-  models.erase(std::remove_if(models.begin() + kItself + 1, models.end(), is_refuted), models.end());
-  std::vector<std::size_t>& rivals = d.effects[effect].rivals;
-  rivals.clear();
-  for (const Settings& model : models) rivals.push_back(model[effect].candidate);
-}
-
-// Describes the best model's effects, the rivals that other stages allow, and the residual. At most one effect is
-// replaced by a rival: afterwards the model has other values and rivals, about which other stages have found nothing
-// yet (settle_by_other_stages() asks them again).
+// Describes the best model's effects with their rivals, none where another stage names the effect, and the residual. At
+// most one effect is replaced by a rival, which another stage names: afterwards the model has other values and rivals,
+// about which other stages have found nothing yet (settle_by_other_stages() asks them again).
 void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simulate, const GapTest& test,
               const DecisionSettings& settings, const Elsewhere& elsewhere) {
   describe_effects(d, curves, simulate, settings);
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    const std::optional<std::size_t> rival = rival_in_place(d, i, curves.candidates, elsewhere);
+    const std::optional<std::size_t> rival = settled_elsewhere(d, i, curves.candidates, elsewhere.named);
     if (!rival || *rival == kItself) continue;
     const Settings settled = d.models_of_rivals[i][*rival];
     d.best =
@@ -169,9 +154,10 @@ void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simu
     break;
   }
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    strike_rivals(d, i, curves.candidates, elsewhere);
-    d.effects[i].refuted_by = elsewhere.refutes(d.effects[i].candidate);
-    d.effects[i].is_named_elsewhere = settled_elsewhere(d, i, curves.candidates, elsewhere.named) == kItself;
+    if (settled_elsewhere(d, i, curves.candidates, elsewhere.named) != kItself) continue;
+    d.effects[i].is_named_elsewhere = true;
+    d.effects[i].rivals.resize(kItself + 1);
+    d.models_of_rivals[i].resize(kItself + 1);
   }
   d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
   d.complete = d.p_left > settings.false_incomplete;
@@ -214,7 +200,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
                            const Elsewhere& elsewhere) {
   // the nominal model and the best single effects
   StageDecision d;
-  d.curves = known;
+  d.curves = not_refuted(known, elsewhere);
   EffectCurves& curves = d.curves;
   take(d, nominal);
   const Model without = nominal_model(d.data);

@@ -37,7 +37,6 @@ enum class Doubt {
   trend,             // so do values of earlier and later parts of runs
   kinds_differ,      // so do values of kinds of channels
   uncertain,         // errors of the description's numbers change its value by too large a part of it
-  refuted,           // it does not fit another stage (elsewhere.hpp)
   not_held_out,      // it explains too little on held-out runs or manoeuvres
   negligible,        // it explains hardly anything of the stage's whole gap
   little_explained,  // in the channels where it acts, the whole model explains too little on held-out runs
@@ -85,8 +84,7 @@ struct ModelEffect {
   HeldOutShares::OfEffect share_of_set{};
   // Error of the description's numbers, 1 sigma, in the unit of this one; 0 for other candidates.
   double ordinarily_off = 0;
-  std::optional<Passage> refuted_by{};  // the stage that it does not fit
-  bool is_named_elsewhere = false;      // by another stage, at a value within both intervals
+  bool is_named_elsewhere = false;  // by another stage, at a value within both intervals
   // Difference from its present value at which errors of the description's numbers could not be its cause; 0 if there
   // are none.
   double sure_from = 0;
@@ -113,8 +111,7 @@ struct StageDecision {
 // Without a gap the verdict is `none`. With one it is `unknown`: if there are effects, judge() has to replace it.
 //
 // `elsewhere`: if another stage names one of an effect's rivals at a value within both intervals, both stages show that
-// rival: it replaces the effect and has no rivals. Rivals that another stage refutes are dropped, and a refuted effect
-// is replaced by a rival that is not refuted.
+// rival: it replaces the effect and has no rivals. What another stage refutes is not searched for.
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
                            const Elsewhere& elsewhere = {});

@@ -217,6 +217,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   stage.residuals = prepared.residuals;
   if (prepared.nominal.data.groups.empty()) return stage;
   stage.nominal_floor = prepared.nominal.floor;
+  stage.refuted = elsewhere.refuted;
 
   // the decision
   const Simulate simulate = simulator_of(prepared, predictor);
@@ -267,9 +268,6 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, kept));
     if (places_with_name(alone.decision).size() >= at_least_names) stage = std::move(alone);
   };
-  // what another stage refutes bears no name, neither its own nor one that depends on it: two scales may compensate for
-  // each other
-  with_alone(places_not_refuted(stage.decision), 0);
   const std::size_t names = places_with_name(stage.decision).size();
   if (const std::vector<std::size_t> tried = places_to_try(stage.decision); tried != places_to_keep(stage.decision))
     with_alone(tried, names + 1);

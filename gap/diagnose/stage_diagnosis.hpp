@@ -40,8 +40,9 @@ struct StageDiagnosis {
   std::vector<Eigen::VectorXd> left;        // residual of each run with the model fitted to other runs
   GapPlaces where, where_left;
   Isolability isolability;
-  std::vector<SingleEvidence> ranking;  // best first
-  std::vector<Dependence> left_over;    // dependences of the residual, largest share first; none if `complete`
+  std::vector<SingleEvidence> ranking;    // best first
+  std::vector<Dependence> left_over;      // dependences of the residual, largest share first; none if `complete`
+  std::vector<RefutedElsewhere> refuted;  // what was not searched for
   double numbers_off = 0;  // error of the description's numbers that this stage shows, for intervals (likelihood.hpp)
 
   bool is_measured() const { return !decision.data.groups.empty(); }
