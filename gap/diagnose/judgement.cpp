@@ -103,14 +103,15 @@ void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<SetOfEffe
            (std::ranges::none_of(set.places, only_misfits) || do_together(set));
   };
 
-  // whether one more effect without a share explains so much more with the set than by itself that it would be a cause
+  // whether with one more effect without a share the set explains so much more that this would be a cause: it would
+  // leave the model without a name, and the set with it
   const auto grows_to = [&](const SetOfEffects& set, const SetOfEffects& larger) {
     if (larger.places.size() != set.places.size() + 1 || !std::ranges::includes(larger.places, set.places))
       return false;
     const std::size_t more = *std::ranges::find_if(
         larger.places, [&](std::size_t place) { return std::ranges::count(set.places, place) == 0; });
     return lacks_share(more) && is_named_together(larger) &&
-           larger.share.of_stage - set.share.of_stage - alone(more) >= settings.stage_share;
+           larger.share.of_stage - set.share.of_stage >= settings.stage_share;
   };
 
   for (const SetOfEffects& smallest : sets) {
