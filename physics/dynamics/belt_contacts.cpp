@@ -139,10 +139,8 @@ class BoxTouches {
       for (int j = 0; j < 3; ++j) reach[k] += btFabs(box_.axes[k][j]) * box_.half[j];
     }
     const btVector3& c = box_.center;
-    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
-    if (c.x() - reach[0] > belt_.length + belt_.radius[1] + kTouching_m ||
-        c.x() + reach[0] < -belt_.radius[0] - kTouching_m || btFabs(c.z()) > reach[2] + r)
-      return;
+    const auto [low, high] = bounding_box(belt_);
+    if (c.x() - reach[0] > high.x() || c.x() + reach[0] < low.x() || btFabs(c.z()) > reach[2] + high.z()) return;
 
     // How deep the two overlap across the belt, and beside which of its side faces the box lies.
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
@@ -201,10 +199,8 @@ class BoxTouches {
 
   // Whether faces of two of the box's axes cut the belt's bounding box: only there an edge may pass through it.
   bool may_meet_edges() const {
-    const btScalar back = -belt_.radius[0] - kTouching_m, front = belt_.length + belt_.radius[1] + kTouching_m;
-    const btVector3 half((front - back) / 2, belt_.half_width,
-                         std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m);
-    const btVector3 from_center = btVector3((back + front) / 2, 0, 0) - box_.center;
+    const BoundingBox belt = bounding_box(belt_);
+    const btVector3 half = (belt.high - belt.low) / 2, from_center = (belt.low + belt.high) / 2 - box_.center;
     int cut = 0;
     for (int j = 0; j < 3; ++j) {
       const btVector3 axis = box_.axes.getColumn(j);
@@ -217,14 +213,14 @@ class BoxTouches {
   void set_corners() {
     const btVector3 along[3] = {box_.axes.getColumn(0) * box_.half[0], box_.axes.getColumn(1) * box_.half[1],
                                 box_.axes.getColumn(2) * box_.half[2]};
-    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
-    const btScalar back = -belt_.radius[0] - kTouching_m, front = belt_.length + belt_.radius[1] + kTouching_m;
+    const auto [low, high] = bounding_box(belt_);
     for (std::size_t k = 0; k < corner_.size(); ++k) {
       btVector3& p = corner_[k];
       p = box_.center;
       for (std::size_t j = 0; j < 3; ++j) p = k >> j & 1 ? p + along[j] : p - along[j];
-      beyond_[k] = (p.x() < back ? 1u : 0) | (p.x() > front ? 2u : 0) | (p.z() < -r ? 4u : 0) | (p.z() > r ? 8u : 0) |
-                   (p.y() < -belt_.half_width ? 16u : 0) | (p.y() > belt_.half_width ? 32u : 0);
+      beyond_[k] = 0;
+      for (int axis = 0; axis < 3; ++axis)
+        beyond_[k] |= (p[axis] < low[axis] ? 1u << 2 * axis : 0) | (p[axis] > high[axis] ? 2u << 2 * axis : 0);
     }
   }
 

@@ -135,11 +135,9 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
     each.out = &owner_.touches_;
 
     // The belt's bounding box, in the mesh's frame, selects the triangles.
-    const btScalar r = std::max(belt.radius[0], belt.radius[1]) + kTouching_m;
-    const btVector3 low(-belt.radius[0] - kTouching_m, -belt.half_width, -r);
-    const btVector3 high(belt.length + belt.radius[1] + kTouching_m, belt.half_width, r);
+    const BoundingBox around = bounding_box(belt);
     btVector3 low_G, high_G;
-    btTransformAabb(low, high, 0, X_TG.inverse(), low_G, high_G);
+    btTransformAabb(around.low, around.high, 0, X_TG.inverse(), low_G, high_G);
     shape.processAllTriangles(&each, low_G, high_G);
   }
 

@@ -1,6 +1,16 @@
 #include "physics/dynamics/belt_shape.hpp"
 
+#include <algorithm>
+
+#include "physics/dynamics/touching.hpp"
+
 namespace kenaf::physics {
+
+BoundingBox bounding_box(const BeltShape& belt) {
+  const btScalar r = std::max(belt.radius[0], belt.radius[1]) + kTouching_m;
+  return {{-belt.radius[0] - kTouching_m, -belt.half_width, -r},
+          {belt.length + belt.radius[1] + kTouching_m, belt.half_width, r}};
+}
 
 OutlineDistance distance_to_outline(const BeltShape& belt, btScalar x, btScalar z) {
   // Mirrored to the upper half; the upper run has the normal (lean, rise) and the direction (rise, -lean).

@@ -30,6 +30,12 @@ struct BeltShape {
   int discs() const { return length > 0 ? 2 : 1; }
 };
 
+// In T, what holds all that can touch the belt; across it, no more than its width.
+struct BoundingBox {
+  btVector3 low, high;
+};
+BoundingBox bounding_box(const BeltShape& belt);
+
 // Signed distance from a point of the plane y = 0 to the outline.
 struct OutlineDistance {
   btScalar distance;  // negative inside
