@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "gap/diagnose/evidence.hpp"
@@ -34,10 +33,8 @@ struct Elsewhere {
   // it; 0 if no other stage does.
   double numbers_off = 0;
 
-  // Returns the stage that refutes the candidate, if any.
-  std::optional<Passage> refutes(std::size_t candidate) const {
-    const auto found = std::ranges::find(refuted, candidate, &RefutedElsewhere::candidate);
-    return found == refuted.end() ? std::nullopt : std::optional(found->by);
+  bool refutes(std::size_t candidate) const {
+    return std::ranges::count(refuted, candidate, &RefutedElsewhere::candidate) > 0;
   }
 };
 

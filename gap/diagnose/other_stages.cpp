@@ -101,7 +101,7 @@ bool concerns(const StageDecision& decision, std::span<const candidates::Candida
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {
     const ModelEffect& effect = decision.effects[e];
     if (!effect.doubts.empty()) continue;
-    const auto is_refuted = [&](std::size_t candidate) { return elsewhere.refutes(candidate).has_value(); };
+    const auto is_refuted = [&](std::size_t candidate) { return elsewhere.refutes(candidate); };
     if (std::ranges::any_of(effect.rivals, is_refuted)) return true;
     if (effect.rivals.size() > 1 && effect.partners.empty() &&
         settled_elsewhere(decision, e, candidates, elsewhere.named))
